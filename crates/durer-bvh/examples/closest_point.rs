@@ -1,4 +1,6 @@
-//! Distances of points from a mesh: `cargo run --release --example closest_point`.
+//! Computes distances from points to a mesh.
+//!
+//! Run it with `cargo run --release --example closest_point`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildQuality, TriangleBvh};
@@ -20,6 +22,6 @@ pub(crate) fn main() {
         let expected = (place.abs() - 1.0).max(Vec3::ZERO).length() + (place.abs() - 1.0).max_element().min(0.0);
         assert!((sign * nearest.distance - f64::from(expected)).abs() < 1e-6);
     }
-    // With a limit, geometry beyond it is skipped.
+    // With a distance limit, the query skips geometry beyond it.
     assert!(bvh.nearest_point(Vec3::new(3.0, 0.2, 0.1), 1.5).is_none());
 }

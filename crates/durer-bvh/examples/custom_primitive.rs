@@ -1,4 +1,6 @@
-//! A tree over custom primitives, here balls: `cargo run --release --example custom_primitive`.
+//! Builds a tree over custom primitives, which are balls here.
+//!
+//! Run it with `cargo run --release --example custom_primitive`.
 
 use durer_bvh::Bvh;
 use durer_bvh::TraversalStats;
@@ -14,7 +16,8 @@ impl Ball {
         Aabb { min: self.center - self.radius, max: self.center + self.radius }
     }
 
-    /// First `t` in the ray's interval, for a direction of length 1.
+    /// Returns the first `t` in the ray's interval at which the ray hits the ball, for a direction
+    /// of length 1.
     fn intersect(&self, ray: &Ray) -> Option<f32> {
         let from = ray.origin - self.center;
         let b = from.dot(ray.dir);
@@ -23,7 +26,7 @@ impl Ball {
     }
 }
 
-/// Closest ball that a ray hits, and its `t`.
+/// Returns the closest ball that a ray hits, and the `t` of the hit.
 fn closest(bvh: &Bvh, balls: &[Ball], ray: &Ray, stats: &mut TraversalStats) -> Option<(usize, f32)> {
     let mut best = None;
     // The tree calls the closure with the position of each primitive that the ray may hit, roughly

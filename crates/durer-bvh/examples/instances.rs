@@ -1,15 +1,18 @@
-//! One mesh in many moving instances: `cargo run --release --example instances`.
+//! Places one mesh in many moving instances.
+//!
+//! Run it with `cargo run --release --example instances`.
 
 use durer_bvh::glam::{DAffine3, DQuat, DVec3};
 use durer_bvh::math::{Affine, Ray, Vec3};
 use durer_bvh::{BuildQuality, Instance, InstanceBvh, TriangleBvh};
 use std::sync::Arc;
 
-/// Bits of the mask, one for each kind of instance.
+/// Mask bits, one for each kind of instance.
 const SOLID: u32 = 1;
 const GHOST: u32 = 2;
 
-/// Places a mesh on a circle, rotated by `angle` (radians). Any invertible affine map would do.
+/// Places a mesh on a circle, rotated by `angle` (radians). Any invertible affine map is allowed
+/// here.
 fn place(angle: f64) -> Affine {
     let turn = DQuat::from_rotation_y(angle);
     Affine::new(DAffine3::from_rotation_translation(turn, turn * DVec3::new(3.0, 0.0, 0.0)))
@@ -35,7 +38,8 @@ pub(crate) fn main() {
     println!("instance {}, triangle {}, normal {}", hit.instance, hit.triangle, scene.normal(&hit));
     assert_eq!(hit.instance, 0);
 
-    // The wheel turns by 30 degrees. The last instance, which only some rays see, is now ahead.
+    // Rotate the wheel by 30 degrees. The last instance, which only some rays can see, is now in
+    // front of the ray.
     scene.update((0..12).map(|i| (i, place(f64::from(i + 1).to_radians() * 30.0))));
     assert_eq!(scene.closest_masked(&ray, GHOST).map(|hit| hit.instance), Some(11));
     assert_eq!(scene.closest_masked(&ray, SOLID), None);

@@ -1,9 +1,11 @@
-//! Ray queries on a mesh, single and in batches: `cargo run --release --example ray_query`.
+//! Traces rays against a mesh, one by one and in batches.
+//!
+//! Run it with `cargo run --release --example ray_query`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildError, BuildQuality, Facing, TriangleBvh};
 
-/// Creates a mesh of hills over the square from -1 to 1, as flat lists of coordinates and indices.
+/// Creates a hilly mesh over the square from -1 to 1, as flat lists of coordinates and indices.
 fn hills(cells: u32) -> (Vec<f32>, Vec<u32>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for i in 0..=cells {
@@ -27,14 +29,14 @@ pub(crate) fn main() -> Result<(), BuildError> {
     let bvh = TriangleBvh::from_flat(&positions, &indices, BuildQuality::Best)?;
     println!("{} triangles in {} bytes", bvh.triangle_count(), bvh.memory_usage());
 
-    // One ray: distance, point, and normal.
+    // Trace one ray, and compute the distance, point, and normal of the hit.
     let ray = Ray::new(Vec3::new(0.05, 0.03, 2.0), Vec3::NEG_Z);
     let hit = bvh.closest(&ray).expect("the sheet lies below");
     println!("t = {}, point {}, normal {}", hit.t, ray.at(hit.t), bvh.normal(&hit));
     assert!((ray.at(hit.t).z - 0.1).abs() < 1e-3);
 
-    // Consecutive rays with similar directions are faster as a batch. Rays may begin and end
-    // anywhere, and several threads may trace batches at the same time.
+    // Consecutive rays with similar directions are traced faster as a batch. Rays may begin and end
+    // anywhere. Several threads may trace batches at the same time.
     let rays: Vec<Ray> = (0..64 * 64)
         .map(|i| {
             let [x, y] = [i % 64, i / 64].map(|k| (k as f32 + 0.5) / 32.0 - 1.0);

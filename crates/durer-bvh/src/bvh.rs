@@ -15,7 +15,7 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct Bvh {
     pub(super) nodes: Vec<WideNode>,
-    /// Numbers of the primitives, in the order of the leaves.
+    /// Primitive numbers, in the order in which the leaves refer to them.
     order: Vec<u32>,
     bounds: Aabb,
     level: AvailableLevel,
@@ -23,23 +23,23 @@ pub struct Bvh {
 
 impl Bvh {
     /// Builds a tree over primitives 0, 1, 2, ..., given by their boxes. Primitives with empty
-    /// boxes are left out. There must be fewer than 2^28 primitives, and the tree at most 2^26
-    /// nodes.
+    /// boxes are left out. There must be fewer than 2^28 primitives, and the tree may have at most
+    /// 2^26 nodes.
     ///
-    /// The tree depends only on the boxes, not on the number of threads.
+    /// The tree depends only on the boxes and not on the number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
         let tree = build::build(build::references(boxes), &BuildSettings::PRIMITIVES);
         Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: AvailableLevel::chosen() }
     }
 
     /// Fits the tree to changed boxes of the same primitives. Refitting is much faster than
-    /// building, but the more the boxes change, the slower rays become. A box that has become empty
-    /// keeps its old bounds if its leaf holds nothing else. Primitives whose boxes were empty at
-    /// build time stay left out.
+    /// building, but rays become slower the more the boxes change. A box that has become empty
+    /// keeps its old bounds if its leaf contains nothing else. Primitives whose boxes were empty
+    /// when the tree was built stay left out.
     ///
     /// # Panics
     ///
-    /// If `boxes` has no entry for a primitive of the tree.
+    /// Panics if `boxes` has no entry for a primitive of the tree.
     pub fn refit(&mut self, boxes: &[Aabb]) {
         node::refit(&mut self.nodes, |leaf| {
             let (first, count) = node::items(leaf);
@@ -49,7 +49,7 @@ impl Bvh {
         self.bounds = node::bounds(&self.nodes);
     }
 
-    /// Bounding box of all primitives.
+    /// Returns the bounding box of all primitives.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -60,28 +60,31 @@ impl Bvh {
         self.nodes.is_empty()
     }
 
-    /// Numbers of the primitives in leaf order. [`Bvh::traverse`] passes positions in this list.
+    /// Returns the primitive numbers in leaf order. [`Bvh::traverse`] passes positions in this
+    /// list.
     #[inline]
     pub fn primitive_indices(&self) -> &[u32] {
         &self.order
     }
 
-    /// Size of the nodes and numbers in bytes.
+    /// Returns the size of the nodes and primitive numbers in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.order)
     }
 
-    /// Expected cost of a ray; see [`TriangleBvh::sah_cost`](super::TriangleBvh::sah_cost).
+    /// Returns the expected cost of a ray; see
+    /// [`TriangleBvh::sah_cost`](super::TriangleBvh::sah_cost).
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 
-    /// Calls `test` for every primitive that the ray may hit before `t_max`, roughly from near to
-    /// far.
+    /// Calls `test` for every primitive that the ray may hit before `t_max`, in approximately
+    /// front-to-back order.
     ///
     /// `test` takes the position of the primitive in [`Bvh::primitive_indices`] and the current
-    /// `t_max`, and returns the new `t_max`, which must not exceed the old one. Primitives whose
-    /// boxes begin exactly at `t_max` are still tested. Minus infinity ends the traversal.
+    /// `t_max`, and returns the new `t_max`, which must not exceed the old one. A primitive whose
+    /// box begins exactly at `t_max` is still tested. If `test` returns minus infinity, the
+    /// traversal ends.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -102,7 +105,7 @@ impl Bvh {
     }
 
     /// Calls `leaf` for each leaf that the ray may hit; see [`Bvh::traverse`]. `leaf` is a trait
-    /// object, so that the traversal is compiled only once and not for each caller.
+    /// object so that the traversal is compiled only once and not once per caller.
     fn traverse_leaves(&self, ray: &Ray, leaf: Leaf) {
         self.level.run(TraversalKernel {
             bvh: self,
@@ -111,7 +114,7 @@ impl Bvh {
         });
     }
 
-    /// Traverses as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
+    /// Traverses the tree as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
     fn traverse_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
         let mut counts = TraversalStats::default();
         self.level.run(TraversalKernel {
@@ -122,14 +125,14 @@ impl Bvh {
         counts.nodes
     }
 
-    /// Iterates over the boxes of the tree, level by level.
+    /// Iterates over the boxes of the tree level by level.
     pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
         tree_boxes::boxes(&self.nodes).map(|(_, bounds)| bounds)
     }
 
     /// Traverses the tree as [`Bvh::traverse`] does, and returns the boxes of the visited nodes and
-    /// leaves in visiting order. Meant for drawing and slow, since it lists all boxes of the tree
-    /// first.
+    /// leaves in visiting order. This method is meant for drawing. It is slow because it first
+    /// lists all boxes of the tree.
     pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
         let boxes: BTreeMap<u32, TreeBox> = tree_boxes::boxes(&self.nodes).collect();
         let mut codes = Vec::new();
@@ -143,11 +146,11 @@ impl Bvh {
     }
 }
 
-/// Leaf callback: takes the positions of the leaf's primitives and `t_max`, and returns the new
+/// Leaf callback. It takes the positions of the leaf's primitives and `t_max`, and returns the new
 /// `t_max`.
 type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
 
-/// Traversal of a [`Bvh`] by one ray, as a kernel that runs at the chosen SIMD level.
+/// Kernel that traverses a [`Bvh`] with one ray at the chosen SIMD level.
 struct TraversalKernel<'a, V> {
     bvh: &'a Bvh,
     ray: &'a Ray,
@@ -192,8 +195,8 @@ impl<T: TraversalCounter> Visitor for LeafVisitor<'_, T> {
     fn fetch<L: Lanes>(&self, lanes: L, hits: &NodeHits<L>, _: u32) {
         let mut rest = hits.mask;
         while rest != 0 {
-            // A leaf's code does not give the address of a node, but prefetching it is harmless. On
-            // 32-bit targets the product may wrap around.
+            // The code of a leaf does not contain the address of a node, but prefetching that
+            // address is harmless. The product may wrap around on 32-bit targets.
             let child = hits.child(rest.trailing_zeros());
             rest &= rest - 1;
             let offset = ((child & !LEAF) as usize).wrapping_mul(node::UNIT);

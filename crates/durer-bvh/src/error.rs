@@ -1,9 +1,9 @@
-//! Errors from building, refitting, and loading trees.
+//! Errors returned when building, refitting, or loading trees.
 
 use std::fmt;
 
-/// Error from building or refitting a [`TriangleBvh`](super::TriangleBvh) or building a
-/// [`HeightGrid`](super::HeightGrid).
+/// Error returned when building or refitting a [`TriangleBvh`](super::TriangleBvh) or when building
+/// a [`HeightGrid`](super::HeightGrid).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -13,7 +13,7 @@ pub enum BuildError {
         triangle: usize,
         /// Index of the missing vertex.
         index: u32,
-        /// Number of vertices.
+        /// Number of vertices in the mesh.
         vertices: usize,
     },
     /// There are 2^28 triangles or more.
@@ -28,8 +28,8 @@ pub enum BuildError {
         /// Length of the list.
         len: usize,
     },
-    /// A height grid has fewer than two lines along an axis, or the number of heights is not the
-    /// number of grid points.
+    /// A height grid has fewer than two lines along an axis, or the number of heights differs from
+    /// the number of grid points.
     InvalidGridSize {
         /// Number of lines along z.
         columns: usize,
@@ -38,13 +38,13 @@ pub enum BuildError {
         /// Number of heights.
         heights: usize,
     },
-    /// A height grid contains a value that is not finite.
+    /// A height grid contains a non-finite value.
     NotFinite,
-    /// A tree was refitted to a different number of triangles.
+    /// A tree was refitted to a mesh with a different number of triangles.
     TriangleCountMismatch {
-        /// Number of triangles at build time.
+        /// Number of triangles when the tree was built.
         built: usize,
-        /// Number of triangles at refit.
+        /// Number of triangles when the tree was refitted.
         refitted: usize,
     },
 }
@@ -80,8 +80,8 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// Error from loading a tree that was saved with
-/// [`TriangleBvh::to_bytes`](super::TriangleBvh::to_bytes).
+/// Error returned when loading a tree that [`TriangleBvh::to_bytes`](super::TriangleBvh::to_bytes)
+/// saved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadError {
@@ -89,16 +89,16 @@ pub enum LoadError {
     NotATree,
     /// The data has a format version that this version of the crate does not support.
     UnsupportedVersion(u32),
-    /// The length of the data differs from the length in the header.
+    /// The length of the data differs from the length stored in the header.
     WrongLength {
         /// Expected length in bytes.
         expected: u64,
         /// Actual length in bytes.
         actual: usize,
     },
-    /// The checksum is wrong: the data is damaged.
+    /// The checksum is wrong, so the data is damaged.
     Damaged,
-    /// The contents are not a valid tree; states the reason.
+    /// The contents are not a valid tree. The string states the reason.
     Invalid(&'static str),
 }
 

@@ -1,4 +1,4 @@
-//! A uniform grid, which divides space into equal cells and lists the primitives in each cell.
+//! A uniform grid divides space into equal cells and lists the primitives in each cell.
 //!
 //! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
 //! 1987.
@@ -7,21 +7,23 @@ use super::TraversalCounter;
 use super::traverse::is_valid;
 use crate::math::{Aabb, Ray, Vec3};
 
-/// Enlargement of primitive boxes that compensates for rounding along rays, in cells.
+/// Margin, in cells, by which primitive boxes are enlarged to compensate for rounding errors along
+/// rays.
 const PAD: f32 = 1e-2;
 
-/// Enlargement of primitive boxes in a grid that is drawn, in cells. Just enough to include
-/// primitives that touch a cell.
+/// Margin, in cells, by which primitive boxes are enlarged if the grid is built for drawing. It is
+/// just large enough to include primitives that touch a cell.
 const DRAWING_PAD: f32 = 1e-3;
 
-/// A uniform grid over the caller's primitives, an alternative to a [`Bvh`](super::Bvh) for rays.
+/// A uniform grid over the caller's primitives. It is an alternative to a [`Bvh`](super::Bvh) for
+/// tracing rays.
 #[derive(Clone, Debug)]
 pub struct Grid {
     bounds: Aabb,
     resolution: [u32; 3],
-    /// Padding of boxes, in cells.
+    /// Margin around primitive boxes, in cells.
     pad: f32,
-    /// Start of each cell's list in `items`, and the end of the last list.
+    /// Start of each cell's list in `items`, followed by the end of the last list.
     starts: Vec<u32>,
     items: Vec<u32>,
     /// Number of primitives.
@@ -31,25 +33,25 @@ pub struct Grid {
 impl Grid {
     /// Maximum number of cells.
     pub const MAX_CELLS: u64 = 1 << 26;
-    /// Maximum number of entries in the lists of all cells.
+    /// Maximum total number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Suitable numbers of cells along x, y, and z for `primitive_count` primitives in a box: about
-    /// two nearly cubic cells per primitive.
+    /// Returns suitable numbers of cells along x, y, and z for `primitive_count` primitives in a
+    /// box. There are about two nearly cubic cells per primitive.
     pub fn suggested_resolution(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
-        // Flat boxes count as slightly thick, so that the number of cells stays bounded.
+        // A flat box is treated as slightly thick, so that the number of cells stays bounded.
         let size = (size / longest).max(Vec3::splat(1e-3)).as_dvec3();
         let cells_per_length = libm::cbrt(2.0 * primitive_count.max(1) as f64 / size.element_product());
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
     /// Divides `bounds` into cells and lists primitives 0, 1, 2, ... in the cells that they
-    /// overlap. A primitive is in a cell if its box overlaps the slightly enlarged cell and
-    /// `overlaps` returns true for its number and that cell.
+    /// overlap. A primitive is listed in a cell if its box overlaps the slightly enlarged cell and
+    /// `overlaps` returns true for the number of the primitive and that cell.
     ///
-    /// Returns `None` if there are no cells, more cells than [`Grid::MAX_CELLS`], or too many
+    /// Returns `None` if there are no cells, more cells than [`Grid::MAX_CELLS`], or too many list
     /// entries.
     pub fn build(
         bounds: Aabb,
@@ -61,7 +63,8 @@ impl Grid {
     }
 
     /// Builds a grid with equal cells for drawing, in which primitives are listed only in the cells
-    /// that they touch. Not for rays, which may miss primitives in it.
+    /// that they touch. Such a grid is not suitable for tracing rays because rays may miss
+    /// primitives in it.
     pub fn for_drawing(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
         Self::build_padded(self.bounds, self.resolution, DRAWING_PAD, boxes, overlaps)
     }
@@ -77,8 +80,8 @@ impl Grid {
         if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
-        // Enlarge the bounds, so that the cells of a flat box have a volume and rounding does no
-        // harm.
+        // Enlarge the bounds so that the cells of a flat box have a volume and rounding errors do
+        // no harm.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
@@ -112,34 +115,34 @@ impl Grid {
         Some(grid)
     }
 
-    /// Edge lengths of a cell.
+    /// Returns the edge lengths of a cell.
     pub fn cell_size(&self) -> Vec3 {
         self.bounds.size() / Vec3::from(self.resolution.map(|n| n as f32))
     }
 
-    /// Numbers of cells along x, y, and z.
+    /// Returns the numbers of cells along x, y, and z.
     pub fn resolution(&self) -> [u32; 3] {
         self.resolution
     }
 
-    /// Bounding box of a cell.
+    /// Returns the bounding box of a cell.
     pub fn cell_bounds(&self, cell: [u32; 3]) -> Aabb {
         let min = self.bounds.min + self.cell_size() * Vec3::from(cell.map(|i| i as f32));
         Aabb { min, max: min + self.cell_size() }
     }
 
-    /// Number of primitives that overlap a cell.
+    /// Returns the number of primitives that overlap a cell.
     pub fn occupancy(&self, cell: [u32; 3]) -> usize {
         self.primitives(cell).len()
     }
 
-    /// Numbers of the primitives that overlap a cell.
+    /// Returns the numbers of the primitives that overlap a cell.
     pub fn primitives(&self, cell: [u32; 3]) -> &[u32] {
         let i = self.number(cell);
         &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    /// Size of the lists in bytes.
+    /// Returns the size of the lists in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.starts) + size_of_val(&*self.items)
     }
@@ -151,17 +154,18 @@ impl Grid {
 
     fn cell_of(&self, p: Vec3) -> [u32; 3] {
         let at = (p - self.bounds.min) / self.cell_size();
-        // The cast saturates at 0.
+        // The cast turns negative numbers into 0.
         std::array::from_fn(|axis| (at[axis] as u32).min(self.resolution[axis] - 1))
     }
 
-    /// Ranges of cells that a box overlaps: the lowest and the highest cell, both included.
+    /// Returns the range of cells that a box overlaps: the lowest and the highest cell, both
+    /// inclusive.
     fn range(&self, b: &Aabb) -> ([u32; 3], [u32; 3]) {
         let pad = self.pad * self.cell_size();
         (self.cell_of(b.min - pad), self.cell_of(b.max + pad))
     }
 
-    /// Number of cells that a box overlaps.
+    /// Returns the number of cells that a box overlaps.
     fn cells_of(&self, b: &Aabb) -> u64 {
         let (low, high) = self.range(b);
         if b.is_empty() { 0 } else { (0..3).map(|axis| u64::from(high[axis] - low[axis] + 1)).product() }
@@ -187,8 +191,8 @@ impl Grid {
     }
 
     /// Calls `test` for the primitives in every cell that the ray crosses before `t_max`, in the
-    /// order of the cells; see [`super::Bvh::traverse`]. A primitive in several cells is tested
-    /// several times.
+    /// order of the cells; see [`super::Bvh::traverse`]. A primitive that is in several cells is
+    /// tested several times.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -207,11 +211,11 @@ impl Grid {
     }
 
     /// Calls `visit` with the primitives of each cell on the ray. Returns false without calling it
-    /// if all primitives should be tested instead. `visit` is a trait object, so that the traversal
-    /// is compiled only once and not for each caller.
+    /// if the caller should test all primitives instead. `visit` is a trait object so that the
+    /// traversal is compiled only once and not once per caller.
     fn visit_cells(&self, ray: &Ray, visit: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
-        // Far from the grid, rounding moves a ray by more than the padding, so also visit
-        // neighbouring cells.
+        // Far from the grid, rounding moves a ray by more than the padding, so neighbouring cells
+        // are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.resolution[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
@@ -223,9 +227,9 @@ impl Grid {
         true
     }
 
-    /// Calls `visit` for all cells within distance `rounding_error` of a ray, layer by layer across
-    /// the ray's main axis. Returns false without calling it if testing all primitives is less
-    /// work.
+    /// Calls `visit` for all cells within distance `rounding_error` of a ray, in layers
+    /// perpendicular to the ray's main axis. Returns false without calling it if testing all
+    /// primitives is less work.
     fn traverse_wide(&self, ray: &Ray, rounding_error: f64, visit: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
@@ -245,13 +249,14 @@ impl Grid {
             if near > end {
                 break;
             }
-            // Cells of this layer that the ray passes; empty if the ray is outside the grid.
+            // Cells of this layer that the ray passes through. The range is empty if the ray is
+            // outside the grid.
             let range = |axis: usize| {
                 let [p, q] = [near, far].map(|t| line.origin[axis] + t * line.dir[axis]);
                 let cell = |at: f64| (at - min[axis]) / size[axis];
                 let (low, high) = (cell(p.min(q) - rounding_error), cell(p.max(q) + rounding_error));
                 let count = f64::from(self.resolution[axis]);
-                // Empty if the interval ends before the grid or begins beyond it.
+                // The range is empty if the interval ends before the grid or begins beyond it.
                 if near > far || !(high >= 0.0 && low < count) {
                     return 0..0;
                 }
@@ -280,8 +285,8 @@ impl Grid {
         }
         let mut cell = self.cell_of(ray.at(enter));
         let size = self.cell_size();
-        // `t` of the next cell wall along each axis, computed from the index of the wall, so that
-        // rounding errors do not accumulate.
+        // `t` of the next cell wall along each axis. It is computed from the index of the wall so
+        // that rounding errors do not accumulate.
         let wall_t = |cell: [u32; 3], axis: usize| {
             if ray.dir[axis] == 0.0 {
                 return f32::INFINITY;
@@ -303,7 +308,7 @@ impl Grid {
                 2
             };
             // Primitives in the padding of a wall are in both cells, so a hit before the wall ends
-            // the walk.
+            // the traversal.
             if next[axis] > t_max {
                 return;
             }

@@ -4,16 +4,18 @@ use super::{Bvh, Facing, TraversalCounter, TriangleBvh, TriangleHit};
 use crate::math::{Aabb, Affine, Ray, Ray64, Vec2, Vec3, triangle_normal};
 use std::sync::Arc;
 
-/// A mesh, as a triangle tree, placed in world space by an affine map; part of an [`InstanceBvh`].
+/// A mesh, stored as a triangle tree and placed in world space by an affine map. It is part of an
+/// [`InstanceBvh`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Instance {
-    /// Triangles in object space.
+    /// Tree over the triangles in object space.
     pub bvh: Arc<TriangleBvh>,
     /// Map from object space to world space. Any invertible map is allowed, including shear and
     /// reflection.
     pub to_world: Affine,
-    /// Visibility mask: a query with a mask finds only instances whose masks share a bit with it.
+    /// Visibility mask. A query with a mask finds only instances whose masks share a set bit with
+    /// it.
     pub mask: u32,
 }
 
@@ -23,7 +25,7 @@ impl Instance {
         Instance { bvh, to_world, mask: u32::MAX }
     }
 
-    /// Replaces the mask.
+    /// Replaces the visibility mask.
     pub fn with_mask(self, mask: u32) -> Self {
         Instance { mask, ..self }
     }
@@ -36,7 +38,7 @@ impl Instance {
     }
 }
 
-/// Intersection of a ray with a triangle of an instance, returned by the queries of
+/// Intersection of a ray with a triangle of an instance, as returned by the queries of
 /// [`InstanceBvh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstanceHit {
@@ -46,7 +48,7 @@ pub struct InstanceHit {
     pub uv: Vec2,
     /// Number of the instance.
     pub instance: u32,
-    /// Number of the triangle in its tree.
+    /// Number of the triangle within its tree.
     pub triangle: u32,
 }
 
@@ -55,19 +57,20 @@ impl InstanceHit {
         InstanceHit { t, uv, instance, triangle }
     }
 
-    /// Sort key of hits along a ray.
+    /// Returns the key by which hits along a ray are sorted.
     fn key(&self) -> (f32, u32, u32) {
         (self.t, self.instance, self.triangle)
     }
 }
 
-/// A two-level BVH over instances of meshes, which can move. Instances share the triangle trees, so
-/// each is in memory only once.
+/// A two-level BVH over instances of meshes that can move. Instances share triangle trees, so each
+/// tree is in memory only once.
 ///
-/// A ray is transformed into object space in double precision and rounded once. Its origin can be
-/// in double precision ([`Ray64`]). In object space it is traced as in a [`TriangleBvh`], so it
-/// crosses exactly one of the triangles at an edge. If several hits have the same `t`, the one with
-/// the lowest instance number is the closest, then the one with the lowest triangle number.
+/// Rays are transformed into object space in double precision and rounded once. The origin of a ray
+/// can also be in double precision ([`Ray64`]). In object space, rays are traced as in a
+/// [`TriangleBvh`], so a ray that meets a shared edge crosses exactly one of the two triangles. If
+/// several hits have the same `t`, the hit with the lowest instance number counts as the closest.
+/// If these are also equal, the lowest triangle number decides.
 ///
 /// ```
 /// use durer_bvh::glam::{DAffine3, DVec3};
@@ -96,7 +99,8 @@ pub struct InstanceBvh {
 }
 
 impl InstanceBvh {
-    /// Builds a tree over fewer than 2^28 instances, numbered by their position in the list.
+    /// Builds a tree over fewer than 2^28 instances. Each instance is numbered by its position in
+    /// the list.
     pub fn new(instances: Vec<Instance>) -> Self {
         let bvh = Self::build(&instances);
         InstanceBvh { instances, bvh }
@@ -106,13 +110,13 @@ impl InstanceBvh {
         Bvh::build(&instances.iter().map(Instance::bounds).collect::<Vec<_>>())
     }
 
-    /// Moves some instances, given by number, and rebuilds the tree over instances, which takes
-    /// much less time than building the triangle trees. The result equals that of
+    /// Moves some instances, given by number, and rebuilds the tree over instances. This takes much
+    /// less time than building the triangle trees. The result is the same as that of
     /// [`InstanceBvh::new`].
     ///
     /// # Panics
     ///
-    /// If a number is out of range.
+    /// Panics if a number is out of range.
     pub fn update(&mut self, moved: impl IntoIterator<Item = (u32, Affine)>) {
         for (number, to_world) in moved {
             self.instances[number as usize].to_world = to_world;
@@ -120,17 +124,17 @@ impl InstanceBvh {
         self.bvh = Self::build(&self.instances);
     }
 
-    /// Instances, by number.
+    /// Returns the instances in the order of their numbers.
     pub fn instances(&self) -> &[Instance] {
         &self.instances
     }
 
-    /// Bounding box of all instances.
+    /// Returns the bounding box of all instances.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
 
-    /// Closest hit in the ray's open interval (`t_min`, `t_max`).
+    /// Returns the closest hit in the ray's open interval (`t_min`, `t_max`).
     pub fn closest(&self, ray: impl Into<Ray64>) -> Option<InstanceHit> {
         self.closest_counting(ray, &mut ())
     }
@@ -140,14 +144,15 @@ impl InstanceBvh {
         self.closest_with(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
     }
 
-    /// Finds the [closest](InstanceBvh::closest) hit on instances that share a bit with `mask`.
+    /// Finds the [closest](InstanceBvh::closest) hit on instances whose masks share a set bit with
+    /// `mask`.
     pub fn closest_masked(&self, ray: impl Into<Ray64>, mask: u32) -> Option<InstanceHit> {
         self.closest_with(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
     }
 
-    /// Finds the closest hit that passes `filter`, on instances that share a bit with `mask`; see
-    /// [`TriangleBvh::closest_where`]. The front of a triangle is determined in world space, after
-    /// any reflection.
+    /// Finds the closest hit that passes `filter`, on instances whose masks share a set bit with
+    /// `mask`; see [`TriangleBvh::closest_where`]. The front side of a triangle is determined in
+    /// world space, after any reflection.
     pub fn closest_where(
         &self,
         ray: impl Into<Ray64>,
@@ -162,7 +167,8 @@ impl InstanceBvh {
         })
     }
 
-    /// Calls `closest` for each instance that the ray may hit, and returns the closest of the hits.
+    /// Calls `closest` for each instance that the ray may hit, and returns the closest of these
+    /// hits.
     #[inline]
     fn closest_with<T: TraversalCounter>(
         &self,
@@ -196,13 +202,14 @@ impl InstanceBvh {
         self.any(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.occluded_counting(ray, counter))
     }
 
-    /// Tests [occlusion](InstanceBvh::occluded) by instances that share a bit with `mask`.
+    /// Tests [occlusion](InstanceBvh::occluded) by instances whose masks share a set bit with
+    /// `mask`.
     pub fn occluded_masked(&self, ray: impl Into<Ray64>, mask: u32) -> bool {
         self.any(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.occluded(ray))
     }
 
-    /// Returns true if any hit passes `filter`, on instances that share a bit with `mask`; see
-    /// [`InstanceBvh::closest_where`].
+    /// Returns true if any hit passes `filter`, on instances whose masks share a set bit with
+    /// `mask`; see [`InstanceBvh::closest_where`].
     pub fn occluded_where(
         &self,
         ray: impl Into<Ray64>,
@@ -233,8 +240,8 @@ impl InstanceBvh {
         is_occluded
     }
 
-    /// Hits in the ray's open interval, sorted by `t`, then by instance number, then by triangle
-    /// number.
+    /// Returns the hits in the ray's open interval, sorted by `t`, then by instance number, then by
+    /// triangle number.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> Vec<InstanceHit> {
         let (mut all, ray) = (Vec::new(), ray.into());
         self.traverse(&ray, u32::MAX, &mut (), |number, bvh, local, _| {
@@ -245,7 +252,7 @@ impl InstanceBvh {
         all
     }
 
-    /// Number of triangles that the ray crosses in its open interval.
+    /// Returns the number of triangles that the ray crosses in its open interval.
     pub fn hit_count(&self, ray: impl Into<Ray64>) -> usize {
         self.all_hits(ray).len()
     }
@@ -254,7 +261,7 @@ impl InstanceBvh {
     ///
     /// # Panics
     ///
-    /// If `rays` and `hits` have different lengths.
+    /// Panics if `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<InstanceHit>]) {
         assert_eq!(rays.len(), hits.len(), "`rays` and `hits` must have the same length");
         rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
@@ -264,7 +271,7 @@ impl InstanceBvh {
     ///
     /// # Panics
     ///
-    /// If `rays` and `answers` have different lengths.
+    /// Panics if `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "`rays` and `answers` must have the same length");
         rays.iter().zip(answers).for_each(|(ray, answer)| *answer = self.occluded(ray));
@@ -274,32 +281,35 @@ impl InstanceBvh {
     ///
     /// # Panics
     ///
-    /// If `rays` and `counts` have different lengths.
+    /// Panics if `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
         assert_eq!(rays.len(), counts.len(), "`rays` and `counts` must have the same length");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 
-    /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
-    /// hits, sorted as in [`InstanceBvh::all_hits`].
+    /// Finds the hits of each ray, in order. `take` receives the index of the ray in the batch and
+    /// its hits, sorted as in [`InstanceBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[InstanceHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
 
-    /// Corners of the hit triangle in world space; `None` if there is no such instance or triangle.
+    /// Returns the corners of the hit triangle in world space, or `None` if there is no such
+    /// instance or triangle.
     pub fn corners(&self, hit: &InstanceHit) -> Option<[Vec3; 3]> {
         let Instance { bvh, to_world, .. } = self.instances.get(hit.instance as usize)?;
         Some(bvh.corners(hit.triangle)?.map(|corner| to_world.point(corner)))
     }
 
-    /// Unit normal of the hit triangle in world space: (b - a) x (c - a), normalised, for its
-    /// corners a, b, c in world space. Zero if the triangle has no area.
+    /// Returns the unit normal of the hit triangle in world space. This is (b - a) x (c - a),
+    /// normalised, where a, b, and c are the corners in world space. The result is zero if the
+    /// triangle has no area.
     pub fn normal(&self, hit: &InstanceHit) -> Vec3 {
         self.corners(hit).map_or(Vec3::ZERO, triangle_normal)
     }
 
-    /// Calls `visit` with the number and tree of each instance that the ray may hit and the ray in
-    /// object space, roughly from near to far. `visit` returns the new `t_max`.
+    /// Calls `visit` for each instance that the ray may hit, in approximately front-to-back order.
+    /// It passes the number and tree of the instance and the ray in object space. `visit` returns
+    /// the new `t_max`.
     #[inline]
     fn traverse<T: TraversalCounter>(
         &self,
@@ -318,7 +328,7 @@ impl InstanceBvh {
         });
     }
 
-    /// Size in bytes. A tree that several instances share is counted once.
+    /// Returns the size in bytes. A tree that several instances share counts only once.
     pub fn memory_usage(&self) -> usize {
         let mut trees: Vec<&Arc<TriangleBvh>> = self.instances.iter().map(|instance| &instance.bvh).collect();
         trees.sort_by_key(|tree| Arc::as_ptr(tree));
@@ -337,13 +347,13 @@ mod tests {
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
     use glam::{DAffine3, DMat3, DVec3};
 
-    /// Returns a random map that rotates, shears, stretches, and possibly mirrors.
+    /// Returns a random affine map that rotates, shears, stretches, and possibly mirrors.
     fn map(random: &mut Random) -> Affine {
         loop {
             let mut axis = || random.point().as_dvec3();
             let matrix = DMat3::from_cols(axis(), axis(), axis());
             let forward = DAffine3 { matrix3: matrix, translation: 2.0 * axis() };
-            // Reject nearly singular maps, which lose digits.
+            // Reject nearly singular maps because they lose digits.
             if let Some(map) = Affine::new(forward).filter(|_| matrix.determinant().abs() > 0.05) {
                 return map;
             }
@@ -357,7 +367,7 @@ mod tests {
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
         let mut placed: Vec<Instance> =
             (0..30).map(|i| Instance::new(trees[i % 2].clone(), map(&mut random))).collect();
-        // Duplicates at the same place: the first is the closest.
+        // If there are duplicates at the same place, the first is the closest.
         placed.extend_from_within(..4);
         let scene = InstanceBvh::new(placed);
         let mut hits = 0;
@@ -392,8 +402,8 @@ mod tests {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
-        // Coordinates that are sums of a few powers of two, so that translating there and back
-        // restores points exactly.
+        // Coordinates are sums of a few powers of two, so translating a point and translating it
+        // back restores it exactly.
         let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
         let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
         let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);
@@ -429,7 +439,8 @@ mod tests {
         }
     }
 
-    /// The scene as one mesh: instance number, triangle number, and corners of each triangle.
+    /// Returns the scene as one mesh, with the instance number, triangle number, and corners of
+    /// each triangle.
     fn flattened(scene: &InstanceBvh, meshes: &[crate::triangles::tests::Mesh]) -> Vec<(u32, u32, [Vec3; 3])> {
         let corners = |(i, instance): (usize, &Instance)| {
             let (vertices, triangles) = meshes[i % meshes.len()].clone();

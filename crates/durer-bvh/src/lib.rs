@@ -1,9 +1,9 @@
-//! Ray queries on triangles and boxes: bounding volume hierarchies, and a uniform grid.
+//! Ray queries on triangles and boxes, with bounding volume hierarchies and a uniform grid.
 //!
-//! [`Bvh`] and [`Grid`] store only the bounding boxes and numbers of primitives. A closure of the
-//! caller intersects the primitives. It may be called for a primitive that the ray misses, but no
-//! primitive that the ray hits is skipped, so both structures find the same hit. [`TriangleBvh`]
-//! stores the triangles too.
+//! [`Bvh`] and [`Grid`] store only the bounding boxes and numbers of primitives. The caller passes
+//! a closure that intersects the primitives. The closure may be called for a primitive that the ray
+//! misses, but no primitive that the ray hits is skipped, so both structures find the same hit.
+//! [`TriangleBvh`] also stores the triangles.
 #![doc = include_str!("../README.md")]
 
 mod build;
@@ -32,16 +32,16 @@ pub use primitive_packs::{PackHit, PrimitivePacks};
 pub use tree_boxes::TreeBox;
 pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
-/// Counter of rays, visited nodes, and primitive tests, passed to queries. `()` counts nothing, at
-/// no cost.
+/// Counts rays, visited nodes, and primitive tests. A counter is passed to queries. `()` counts
+/// nothing and costs nothing.
 pub trait TraversalCounter {
-    /// True if nodes and tests are counted. If false, the trees use a code path without counters.
+    /// True if nodes and tests are counted. If false, the trees use code without counters.
     const COUNTS_WORK: bool;
 
     /// Counts one ray.
     fn ray(&mut self) {}
 
-    /// Counts visited nodes or cells, and primitives tested against the ray.
+    /// Counts visited nodes or cells, and primitives that were tested against the ray.
     fn count_work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
@@ -77,9 +77,9 @@ impl TraversalCounter for RayCount {
 pub struct TraversalStats {
     /// Rays traced.
     pub rays: u64,
-    /// Nodes or cells visited.
+    /// Number of visited nodes or cells.
     pub nodes: u64,
-    /// Primitives tested against a ray.
+    /// Number of primitives that were tested against a ray.
     pub primitive_tests: u64,
 }
 
@@ -95,7 +95,7 @@ impl TraversalCounter for TraversalStats {
     }
 }
 
-/// Items for the other crates of the workspace. They can change in any version.
+/// Items that the other crates of the workspace use. They may change in any version.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::lanes::{PlainKernel, prefetch, run_plain, vec_on_large_pages};

@@ -2,40 +2,43 @@
 
 use crate::math::Aabb;
 
-/// Number of children of a node, and of lanes of a vector.
+/// Number of children of a node, and number of lanes of a vector.
 pub const WIDTH: usize = 8;
 
-/// Maximum depth of a leaf; bounds the stack of a traversal.
+/// Maximum depth of a leaf. It bounds the size of the traversal stack.
 pub(super) const MAX_DEPTH: usize = 160;
 
-/// Node of a BVH with the boxes of up to eight children, stored by plane for SIMD box tests. Unused
-/// slots have empty boxes, which no ray hits.
+/// Node of a BVH that holds the boxes of up to eight children. The boxes are stored plane by plane
+/// for SIMD box tests. Unused slots have empty boxes, which no ray hits.
 ///
-/// Children are sorted along one axis, so that their order is roughly from near to far, or from far
-/// to near, for any ray.
+/// Children are sorted along one axis, so for any ray their order is approximately from near to far
+/// or from far to near.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct WideNode {
-    /// Lower and upper planes of the boxes, by axis.
+    /// Lower and upper planes of the boxes, for each axis.
     pub planes: [[[f32; WIDTH]; 2]; 3],
     /// Codes of the children. The code of an inner node is its [`node_offset`]. The code of a leaf
-    /// combines [`LEAF`], the item count minus one shifted by [`COUNT_SHIFT`], and the first item.
+    /// combines [`LEAF`], the item count minus one shifted by [`COUNT_SHIFT`], and the number of
+    /// the first item.
     pub children: [u32; WIDTH],
-    /// One bit per octant of directions, numbered by
-    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative). It is set if rays visit
-    /// the children from last to first. The first entry is for closest-hit rays, the second for
-    /// any-hit rays.
+    /// One bit for each octant of ray directions, numbered by
+    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative). A bit is set if rays of
+    /// that octant visit the children from last to first. The first entry is for closest-hit rays,
+    /// and the second is for any-hit rays.
     pub reversed_octants: [u32; 2],
-    /// Offset of the first inner child, if any. The other inner children follow it in any order.
+    /// Offset of the first inner child, if there is one. The other inner children follow it in any
+    /// order.
     pub first: u32,
-    /// Tag of each child. The bits of [`SLOT_BITS`] hold its slot. A leaf has the bit [`IS_LEAF`].
-    /// For an inner node, the bits of [`OFFSET_BITS`] hold its distance from the first inner child.
-    /// A tag has only eight bits, so that it can replace the last bits of an entry distance.
+    /// Tags of the children. The bits of [`SLOT_BITS`] hold the child's slot. The bit [`IS_LEAF`]
+    /// is set for leaves. For an inner node, the bits of [`OFFSET_BITS`] hold its distance from the
+    /// first inner child. A tag has only eight bits, so it can replace the last bits of an entry
+    /// distance.
     pub child_tags: [u8; WIDTH],
 }
 
-/// Bytes between the two orders in the traversal's lookup table, so that a lookup needs no
-/// arithmetic.
+/// Number of bytes between the two orders in the traversal's lookup table. With this distance, a
+/// lookup needs no arithmetic.
 pub(super) const REVERSED: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
 
 /// Bits of a [tag](WideNode::child_tags) that hold the child's slot.
@@ -49,7 +52,8 @@ const _: () = assert!(OFFSET_BITS & (SLOT_BITS | IS_LEAF) == 0 && OFFSET_BITS < 
 pub(super) const LEAF: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
-/// Maximum number of items in a tree, limited by the bits for the first item of a leaf.
+/// Maximum number of items in a tree. It is limited by the number of bits for the first item of a
+/// leaf.
 pub(super) const MAX_ITEMS: usize = FIRST_MASK as usize;
 /// Maximum number of items in a leaf.
 pub(super) const LEAF_SIZE: usize = 8;
@@ -63,7 +67,7 @@ impl WideNode {
         child_tags: [0; WIDTH],
     };
 
-    /// Sets a child. For an inner child, [`first`](WideNode::first) must be set already.
+    /// Sets a child. For an inner child, [`first`](WideNode::first) must already be set.
     pub fn set(&mut self, slot: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {
             self.planes[axis][0][slot] = bounds.min[axis];
@@ -75,54 +79,56 @@ impl WideNode {
         self.child_tags[slot] = (slot as u32 | rest) as u8;
     }
 
-    /// Bounding box of a child; empty for an unused slot.
+    /// Returns the bounding box of a child. It is empty for an unused slot.
     pub fn bounds(&self, slot: usize) -> Aabb {
         let side = |side: usize| std::array::from_fn::<f32, 3, _>(|axis| self.planes[axis][side][slot]).into();
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// [`REVERSED`] if rays of an octant take the children from last to first, else 0. `any`
-    /// selects the order for any-hit rays.
+    /// Returns [`REVERSED`] if rays of an octant visit the children from last to first, and 0
+    /// otherwise. `any` selects the order for any-hit rays.
     #[inline(always)]
     pub fn order(&self, any: bool, octant: u32) -> u32 {
         self.reversed_octants[usize::from(any)] << (REVERSED.trailing_zeros() - (octant & 7)) & REVERSED
     }
 
-    /// Slot, box, and code of each child in use.
+    /// Iterates over the slot, box, and code of each child in use.
     pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
         let all = (0..WIDTH).map(|slot| (slot, self.bounds(slot), self.children[slot]));
         all.filter(|(_, bounds, _)| bounds.min.x <= bounds.max.x)
     }
 }
 
-/// Unit of node offsets in bytes: the largest factor by which the processor scales an index.
+/// Unit of node offsets in bytes, which is the largest factor by which the processor can scale an
+/// index.
 pub(super) const UNIT: usize = 8;
-/// Number of units in a node.
+/// Size of a node in units.
 pub(super) const UNITS: usize = size_of::<WideNode>() / UNIT;
 /// Maximum number of nodes in a tree.
 pub(super) const MAX_NODES: usize = LEAF as usize / UNITS;
 const _: () = assert!(UNITS.is_power_of_two() && MAX_NODES <= 1 << (32 - UNITS.trailing_zeros()));
 
-/// Offset of a node from the first node, in units of [`UNIT`] bytes. Its address then needs no
-/// arithmetic, which would delay every ray at every node.
+/// Returns the offset of a node from the first node, in units of [`UNIT`] bytes. The address of the
+/// node then needs no arithmetic, which would delay every ray at every node.
 pub(super) fn node_offset(number: usize) -> u32 {
     assert!(number < MAX_NODES, "a tree has at most 2^26 nodes");
     (number * UNITS) as u32
 }
 
-/// Number of the node at an offset.
+/// Returns the number of the node at an offset.
 #[inline(always)]
 pub(super) fn node_index(address: u32) -> usize {
     address as usize / UNITS
 }
 
-/// Code of a leaf with `count` items from item `first` on; see [`WideNode::children`].
+/// Returns the code of a leaf with `count` items, starting at item `first`; see
+/// [`WideNode::children`].
 pub(super) fn leaf(first: usize, count: usize) -> u32 {
     debug_assert!((1..=LEAF_SIZE).contains(&count) && first < MAX_ITEMS);
     LEAF | ((count - 1) as u32) << COUNT_SHIFT | first as u32
 }
 
-/// First item and item count of a leaf.
+/// Returns the first item and the item count of a leaf.
 #[inline(always)]
 pub(super) fn items(leaf: u32) -> (usize, usize) {
     ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
@@ -131,7 +137,8 @@ pub(super) fn items(leaf: u32) -> (usize, usize) {
 /// Refits all boxes of a tree after primitives have moved. `leaf_bounds` returns the box of a
 /// leaf's primitives.
 pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
-    // Children come after their parents, so the boxes below a node are final when it is reached.
+    // Children come after their parents, so the boxes below a node are final by the time the loop
+    // reaches it.
     for parent in (0..nodes.len()).rev() {
         let children: Vec<(usize, Aabb, u32)> = nodes[parent].children().collect();
         for (slot, _, child) in children {
@@ -147,13 +154,13 @@ pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
     }
 }
 
-/// Bounding box of the tree.
+/// Returns the bounding box of the tree.
 pub(super) fn bounds(nodes: &[WideNode]) -> Aabb {
     nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)))
 }
 
-/// Expected cost of a random ray through the bounds by the surface area heuristic, in node tests. A
-/// leaf is assumed to cost as much as a node.
+/// Returns the expected cost, in node tests, of a random ray through the bounds, by the surface
+/// area heuristic. A leaf is assumed to cost as much as a node.
 pub(super) fn cost(nodes: &[WideNode], bounds: Aabb) -> f64 {
     let root = f64::from(bounds.half_area());
     let children = nodes.iter().flat_map(|node| node.children());

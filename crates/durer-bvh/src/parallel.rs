@@ -1,5 +1,5 @@
-//! Loops that run in parallel with the feature `rayon`, and sequentially without it, with equal
-//! results.
+//! Loops that run in parallel with the feature `rayon` and sequentially without it. The results are
+//! the same.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -12,8 +12,8 @@ pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     (a(), b())
 }
 
-/// Runs `work` on a thread of the pool. From a thread outside the pool, each parallel step would
-/// have to be passed to the pool and awaited.
+/// Runs `work` on a thread of the thread pool. If the caller were outside the pool, each parallel
+/// step would have to be handed to the pool and awaited.
 pub fn on_pool<A: Send>(work: impl FnOnce() -> A + Send) -> A {
     #[cfg(feature = "rayon")]
     return rayon::scope(|_| work());

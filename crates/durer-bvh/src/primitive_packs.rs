@@ -1,16 +1,16 @@
-//! Planes, spheres, discs, rectangles, and boxes, tested eight at a time without a tree.
+//! Planes, spheres, discs, rectangles, and boxes, which are tested eight at a time without a tree.
 //!
-//! Used for scenes with only a few primitives, where a tree would cost more than it saves, and for
-//! planes, which have no bounding box. Each lane computes what a test of one primitive would
-//! compute, in double precision and in the same order, so hits have the same bits.
+//! They are used for scenes with only a few primitives, where a tree would cost more than it saves,
+//! and for planes, which have no bounding box. Each lane computes what a test of one primitive
+//! would compute, in double precision and in the same order, so the hits have the same bits.
 
 use super::TraversalCounter;
 use super::lanes::{AvailableLevel, Kernel, Lanes, WIDTH, as_floats};
 use crate::math::{Doubles, Ray, Triple, Vec3};
 use glam::DVec3;
 
-/// A list of planes, spheres, discs, rectangles, and boxes for ray queries without a tree, packed
-/// for SIMD. The caller numbers the primitives.
+/// A list of planes, spheres, discs, rectangles, and boxes that answers ray queries without a tree,
+/// packed for SIMD. The caller numbers the primitives.
 #[derive(Clone, Debug)]
 pub struct PrimitivePacks {
     planes: Vec<Pack<PLANE>>,
@@ -18,7 +18,7 @@ pub struct PrimitivePacks {
     discs: Vec<Pack<DISC>>,
     rectangles: Vec<Pack<RECTANGLE>>,
     boxes: Vec<Pack<BOX>>,
-    /// Number of primitives of all kinds.
+    /// Total number of primitives of all kinds.
     count: usize,
     level: AvailableLevel,
 }
@@ -32,8 +32,8 @@ pub struct PackHit {
     pub number: u32,
 }
 
-/// Up to eight primitives of one kind for the SIMD lanes, each described by `N` numbers. In unused
-/// lanes these are NaN, which no ray hits.
+/// Up to eight primitives of one kind, one per SIMD lane, each described by `N` numbers. In unused
+/// lanes these numbers are NaN, so no ray hits them.
 #[derive(Clone, Copy, Debug)]
 struct Pack<const N: usize> {
     parameters: [[f64; WIDTH]; N],
@@ -41,7 +41,7 @@ struct Pack<const N: usize> {
 }
 
 impl<const N: usize> Pack<N> {
-    /// Lanes in use.
+    /// Returns the range of the lanes in use.
     #[inline(always)]
     fn indices(&self) -> std::ops::Range<usize> {
         let mut end = WIDTH;
@@ -87,29 +87,29 @@ impl Default for PrimitivePacks {
 }
 
 impl PrimitivePacks {
-    /// Adds the plane normal · p = offset.
+    /// Adds the plane with the equation normal · p = offset.
     pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
         let n = normal.as_dvec3();
         push(&mut self.planes, number, [n.x, n.y, n.z, f64::from(offset)]);
         self.count += 1;
     }
 
-    /// Adds the sphere |p - center| = radius.
+    /// Adds the sphere with the equation |p - center| = radius.
     pub fn push_sphere(&mut self, number: u32, center: Vec3, radius: f32) {
         let c = center.as_dvec3();
         push(&mut self.spheres, number, [c.x, c.y, c.z, f64::from(radius) * f64::from(radius)]);
         self.count += 1;
     }
 
-    /// Adds the disc around a centre, perpendicular to a unit normal, from an inner radius to an
-    /// outer radius.
+    /// Adds the disc around a centre that is perpendicular to a unit normal and extends from an
+    /// inner to an outer radius.
     pub fn push_disc(&mut self, number: u32, center: Vec3, normal: DVec3, [inner, outer]: [f32; 2]) {
         let (c, n) = (center.as_dvec3(), normal);
         push(&mut self.discs, number, [n.x, n.y, n.z, c.x, c.y, c.z, f64::from(inner), f64::from(outer)]);
         self.count += 1;
     }
 
-    /// Adds the parallelogram spanned by two edges at a corner.
+    /// Adds the parallelogram that two edges span at a corner.
     pub fn push_rectangle(&mut self, number: u32, corner: Vec3, edges: [Vec3; 2]) {
         let (c, [e, f]) = (corner.as_dvec3(), edges.map(|edge| edge.as_dvec3()));
         let n = e.cross(f);
@@ -118,25 +118,25 @@ impl PrimitivePacks {
         self.count += 1;
     }
 
-    /// Adds the box between two corners.
+    /// Adds the axis-aligned box between two opposite corners.
     pub fn push_box(&mut self, number: u32, min: Vec3, max: Vec3) {
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         push(&mut self.boxes, number, [min.x, min.y, min.z, max.x, max.y, max.z]);
         self.count += 1;
     }
 
-    /// Number of primitives.
+    /// Returns the number of primitives.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Returns true if there are zero primitives.
+    /// Returns true if there are no primitives.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Closest hit in the ray's interval. If several hits have the same `t`, the one with the
-    /// lowest number is returned. The ray must be finite and have a direction.
+    /// Returns the closest hit in the ray's interval. If several hits have the same `t`, the one
+    /// with the lowest number is returned. The ray must be finite and its direction nonzero.
     #[inline]
     pub fn closest<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<PackHit> {
         if self.is_empty() {
@@ -147,16 +147,17 @@ impl PrimitivePacks {
         (hit.number != u32::MAX).then_some(hit)
     }
 
-    /// Closest hits of eight rays, equal to those of [`PrimitivePacks::closest`]. The rays are
-    /// tested side by side, one primitive after the other, which is faster if there are few
-    /// primitives. Rays that are not finite or have no direction hit nothing.
+    /// Returns the closest hits of eight rays. They equal the results of
+    /// [`PrimitivePacks::closest`]. The rays are tested side by side against one primitive after
+    /// the other, which is faster if there are few primitives. Rays that are not finite or have a
+    /// zero direction hit nothing.
     pub fn closest_of_eight(&self, rays: [&Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
         let hits = self.level.run(BatchQuery { packs: self, rays });
         hits.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
 
-    /// Returns true if the ray hits anything in its interval. The ray must be finite and have a
-    /// direction.
+    /// Returns true if the ray hits anything in its interval. The ray must be finite and its
+    /// direction nonzero.
     #[inline]
     pub fn occluded<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
         if self.is_empty() {
@@ -186,7 +187,7 @@ struct Rays<L: Lanes> {
 }
 
 impl<L: Lanes> Rays<L> {
-    /// Mask of the lanes in which `t` lies in the interval.
+    /// Returns a mask of the lanes in which `t` lies in the interval.
     #[inline(always)]
     fn contain(&self, lanes: L, t: L::Floats) -> u32 {
         lanes.lt(self.t_min, t) & lanes.lt(t, self.t_max)
@@ -198,14 +199,14 @@ impl<L: Lanes> Rays<L> {
     }
 }
 
-/// Intersection test of one kind of primitive, which is described by `N` numbers. Implemented by
-/// [`Planes`], [`Spheres`], [`Discs`], [`Rectangles`], and [`Boxes`].
+/// Intersection test for one kind of primitive, which is described by `N` numbers. [`Planes`],
+/// [`Spheres`], [`Discs`], [`Rectangles`], and [`Boxes`] implement it.
 trait PackedShape<const N: usize> {
-    /// First hits in the rays' intervals: a mask of lanes, and `t`.
+    /// Returns the first hits in the rays' intervals, as a mask of lanes and `t`.
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, parameters: &[L::Doubles; N]) -> (u32, L::Floats);
 }
 
-/// Ray test of planes, normal · p = offset.
+/// Ray test for planes, normal · p = offset.
 struct Planes;
 const PLANE: usize = 4;
 
@@ -213,13 +214,13 @@ impl PackedShape<PLANE> for Planes {
     #[inline(always)]
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
         let normal = [x, y, z];
-        // A parallel ray divides by zero and hits nothing.
+        // For a ray parallel to the plane, the division by zero results in no hit.
         let t = lanes.singles(offset.sub(normal.dot(rays.origin)).div(normal.dot(rays.dir)));
         (rays.contain(lanes, t), t)
     }
 }
 
-/// Ray test of spheres, |p - center|^2 = square.
+/// Ray test for spheres, |p - center|^2 = square.
 struct Spheres;
 const SPHERE: usize = 4;
 
@@ -227,8 +228,8 @@ impl PackedShape<SPHERE> for Spheres {
     #[inline(always)]
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
         // The discriminant is computed at the point of the ray nearest to the centre, which keeps
-        // small, distant spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
-        // (2019), chapter 7.
+        // the test accurate for small, distant spheres. Source: Haines, Günther, Akenine-Möller,
+        // *Ray Tracing Gems* (2019), chapter 7.
         let o = rays.origin.sub([x, y, z]);
         let (dd, b) = (rays.dir.dot(rays.dir), o.dot(rays.dir).mul(lanes.splat_double(-1.0)));
         let along = b.div(dd);
@@ -246,7 +247,7 @@ impl PackedShape<SPHERE> for Spheres {
     }
 }
 
-/// Ray test of discs, normal · (p - center) = 0 with |p - center| between the radii.
+/// Ray test for discs, normal · (p - center) = 0 with |p - center| between the radii.
 struct Discs;
 const DISC: usize = 8;
 
@@ -263,7 +264,7 @@ impl PackedShape<DISC> for Discs {
     }
 }
 
-/// Ray test of parallelograms, corner + u e + v f with u and v in [0, 1].
+/// Ray test for parallelograms, corner + u e + v f with u and v in [0, 1].
 struct Rectangles;
 const RECTANGLE: usize = 13;
 
@@ -275,7 +276,7 @@ impl PackedShape<RECTANGLE> for Rectangles {
         let t = n.dot(corner.sub(rays.origin)).div(n.dot(rays.dir));
         let hit_t = lanes.singles(t);
         let hits = rays.contain(lanes, hit_t);
-        // Most rays do not hit the plane in their interval.
+        // Most rays do not hit the plane within their interval.
         if hits == 0 {
             return (0, hit_t);
         }
@@ -288,7 +289,7 @@ impl PackedShape<RECTANGLE> for Rectangles {
     }
 }
 
-/// Ray test of boxes between two corners, as the intersection of three slabs. Source: Kay and
+/// Ray test for boxes between two corners, as the intersection of three slabs. Source: Kay and
 /// Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
 struct Boxes;
 const BOX: usize = 6;
@@ -299,9 +300,9 @@ impl PackedShape<BOX> for Boxes {
         let infinity = lanes.splat_double(f64::INFINITY);
         let (mut enter, mut leave) = (lanes.splat_double(f64::NEG_INFINITY), infinity);
         for axis in 0..3 {
-            // If the ray is parallel to the slab, both ends are infinite: with different signs
-            // inside and with equal signs outside. On a face, one is NaN. Adding 0 avoids a zero
-            // with a negative sign.
+            // If the ray is parallel to the slab, both ends are infinite. They have different signs
+            // if the ray is inside the slab and equal signs if it is outside. If the ray lies on a
+            // face, one end is NaN. Adding 0 avoids a zero with a negative sign.
             let (o, d) = (rays.origin[axis], rays.dir[axis].add(lanes.splat_double(0.0)));
             let (a, b) = (parameters[axis].sub(o).div(d), parameters[axis + 3].sub(o).div(d));
             // min and max drop a NaN operand, so only the other plane bounds the interval.
@@ -314,8 +315,8 @@ impl PackedShape<BOX> for Boxes {
     }
 }
 
-/// Mask of the lanes in which `near` or `far` lies in the ray's interval, and the first `t` that
-/// does.
+/// Returns a mask of the lanes in which `near` or `far` lies in the ray's interval, and the first
+/// of the two that does.
 #[inline(always)]
 fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u32, L::Floats) {
     let (near, far) = (lanes.singles(near), lanes.singles(far));
@@ -323,15 +324,15 @@ fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u
     (in_near | rays.contain(lanes, far), lanes.select(in_near, near, far))
 }
 
-/// Query of one ray against all packs, eight primitives at a time. If `ANY`, it stops at any hit;
-/// otherwise it finds the closest.
+/// Query that tests one ray against all packs, eight primitives at a time. If `ANY` is true, the
+/// query stops at any hit. Otherwise, it finds the closest hit.
 struct Query<'a, const ANY: bool> {
     packs: &'a PrimitivePacks,
     ray: &'a Ray,
 }
 
 impl<const ANY: bool> Query<'_, ANY> {
-    /// Tests packs of one kind. Returns true if the query is finished.
+    /// Tests the packs of one kind. Returns true if the query is finished.
     #[inline(always)]
     fn test_packs<L: Lanes, F: PackedShape<N>, const N: usize>(
         lanes: L,
@@ -373,14 +374,14 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     }
 }
 
-/// Query of eight rays at a time against all packs, one primitive at a time.
+/// Query that tests eight rays at a time against all packs, one primitive at a time.
 struct BatchQuery<'a> {
     packs: &'a PrimitivePacks,
     rays: [&'a Ray; WIDTH],
 }
 
 impl BatchQuery<'_> {
-    /// Tests packs of one kind.
+    /// Tests the packs of one kind.
     #[inline(always)]
     fn test_packs<L: Lanes, F: PackedShape<N>, const N: usize>(
         (lanes, rays, finite): (L, &Rays<L>, u32),
@@ -422,7 +423,8 @@ impl Kernel for BatchQuery<'_> {
     }
 }
 
-/// Mask of the rays that are finite and have a direction. `numbers` holds origins and directions.
+/// Returns a mask of the rays that are finite and have a nonzero direction. `numbers` holds the
+/// origins and directions.
 #[inline(always)]
 fn finite_rays<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
@@ -437,7 +439,7 @@ fn finite_rays<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     all
 }
 
-/// Updates the best hits of the rays in the mask `hits` with a hit at `t` of primitive `number`.
+/// Updates the best hits of the rays in the mask `hits` with a hit of primitive `number` at `t`.
 #[inline(always)]
 fn update_closest(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDTH]) {
     while hits != 0 {
@@ -449,7 +451,7 @@ fn update_closest(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackH
     }
 }
 
-/// Closest of the hit `best` and the hits of the lanes in the mask `hits`.
+/// Returns the closest hit among the hit `best` and the hits of the lanes in the mask `hits`.
 #[inline(always)]
 fn nearest(t: [f32; WIDTH], mut hits: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
     while hits != 0 {

@@ -10,7 +10,7 @@ fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
 }
 
-/// Returns sets of difficult boxes, each with a name for messages.
+/// Returns sets of difficult boxes, each with a name for test messages.
 fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
     let mut random = Random(1);
     let mut some = |count: usize, half: &dyn Fn(usize) -> f32, place: f32| -> Vec<Aabb> {
@@ -42,7 +42,7 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
     ]
 }
 
-/// Depth of a subtree in nodes.
+/// Returns the depth of a subtree in nodes.
 fn depth(nodes: &[node::WideNode], number: usize) -> usize {
     let inner = nodes[number].children().filter(|(_, _, child)| child & node::LEAF == 0);
     1 + inner.map(|(_, _, child)| depth(nodes, node::node_index(child))).max().unwrap_or(0)
@@ -78,8 +78,8 @@ fn every_box_on_a_ray_is_visited() {
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];
-            // A point of the box, on its boundary in two of three rounds, and a ray to it from near
-            // or far.
+            // Returns a point of the box, which is on its boundary in two of three rounds, and a
+            // ray to it from near or far.
             let mix = |random: &mut Random| [random.unit(), 0.0, 1.0][random.below(3)];
             let w = Vec3::new(mix(&mut random), mix(&mut random), mix(&mut random));
             let target = b.min * (Vec3::ONE - w) + b.max * w;
@@ -131,7 +131,7 @@ fn boxes_at_the_ray_end_are_offered_and_traversal_stops_on_request() {
         last = last.max(bvh.primitive_indices()[item]);
         t_max.min(11.0)
     });
-    // t = 11 is x = 9.5, the last face of box 9 and the first of box 10.
+    // t = 11 is x = 9.5, which is the last face of box 9 and the first face of box 10.
     assert!(last >= 10, "{last}");
     let mut offered = 0;
     bvh.traverse(&ray, &mut (), |_, _, _| {
@@ -146,7 +146,7 @@ fn slab_is_clipped_by_the_sign_of_the_direction() {
     let b = cube(Vec3::ZERO, 1.0);
     assert_eq!(b.clip(Vec3::new(-3.0, 0.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(3.0, 0.0, 0.0), Vec3::X * -2.0), Some((1.0, 2.0)));
-    // In a face, in an edge, and just outside them.
+    // The rays lie in a face, along an edge, and just outside them.
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, -1.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0f32.next_up(), 0.0), Vec3::X), None);
@@ -211,8 +211,8 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
 }
 
-/// Directions with zero components are frequent, for example with orthographic cameras, voxels, or
-/// a sun overhead.
+/// Directions with zero components are common, for example with orthographic cameras, voxels, or a
+/// sun straight overhead.
 #[test]
 fn rays_with_zero_components_are_fast() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();
@@ -255,8 +255,8 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
                 visited[item] = true;
                 t_max
             });
-            // Every box must be offered that the line hits after enlarging it by the rounding
-            // error.
+            // If the line hits a box after the box is enlarged by the rounding error, the grid must
+            // offer that box.
             let slip = 2.0 * f32::EPSILON * distance;
             for (i, b) in boxes.iter().enumerate() {
                 let near = Aabb { min: b.min - slip, max: b.max + slip };

@@ -5,14 +5,15 @@ use crate::math::Aabb;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Bounding box of a node or leaf of a [`Bvh`](super::Bvh), with its depth, for drawing.
+/// Bounding box of a node or leaf of a [`Bvh`](super::Bvh), with its depth. It is meant for
+/// drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBox {
     /// Bounding box of its subtree.
     pub bounds: Aabb,
-    /// Depth; 0 for the root's box.
+    /// Depth in the tree. The root's box has depth 0.
     pub level: u32,
-    /// Positions of a leaf's primitives in leaf order; empty for an inner node.
+    /// Positions of a leaf's primitives in leaf order. The range is empty for an inner node.
     pub items: Range<usize>,
 }
 

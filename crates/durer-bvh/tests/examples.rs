@@ -1,4 +1,4 @@
-//! Runs the examples, each of which asserts its result.
+//! Runs the examples. Each of them asserts its own result.
 
 macro_rules! examples {
     ($($name:ident: $file:literal)*) => {$(
@@ -13,8 +13,8 @@ macro_rules! examples {
     )*};
 }
 
-/// Return types of the `main` functions of examples, `()` or `Result`, to check that they
-/// succeeded.
+/// Return type of the `main` function of an example, which is `()` or `Result`, to check that the
+/// example succeeded.
 trait ExampleResult {
     fn ended(self);
 }

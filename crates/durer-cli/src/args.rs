@@ -33,7 +33,7 @@ pub struct Cli {
     pub command: Command,
 }
 
-// The subcommands of `durer`. A doc comment here would replace the description of the program.
+// The subcommands of `durer`. A doc comment here would replace the program's description.
 #[derive(Subcommand)]
 pub enum Command {
     Render(Box<RenderCommand>),

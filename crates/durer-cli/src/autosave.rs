@@ -1,4 +1,4 @@
-//! Checkpoints, part files and previews of long renders.
+//! Checkpoints, part files and previews for long renders.
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::{FileRegistry, start_of};
@@ -16,17 +16,18 @@ use std::time::{Duration, Instant};
 /// Time before the first save, unless `--checkpoint-every` is shorter.
 const SHORT: Duration = Duration::from_secs(1);
 
-/// Estimated bytes saved per second, used until the first save is measured.
+/// Estimated number of bytes saved per second, used until the first save has been measured.
 const SAVED_PER_SECOND: u64 = 200_000_000;
 
-/// Saves unfinished work and previews while a long picture is rendered, and restores saved work.
+/// Saves unfinished work and previews while a long picture is being rendered, and restores saved
+/// work.
 pub struct Autosave {
-    /// File of the saved work.
+    /// File for the saved work.
     destination: Option<Destination>,
-    /// True if the saved work is an output that the user asked for. Otherwise it is kept only until
-    /// the picture is written.
+    /// True if the saved work is an output that the user asked for. Otherwise, the file is kept
+    /// only until the picture has been written.
     is_output: bool,
-    /// Earlier work to continue, if any.
+    /// Earlier work to continue, if there is any.
     saved: Cell<Option<Box<PartialRender>>>,
     resume: bool,
     restart: bool,
@@ -35,7 +36,7 @@ pub struct Autosave {
     display: Display,
     start: Instant,
     first_save_after: Duration,
-    /// True if this run has saved work to the file.
+    /// True if this run has already saved work to the file.
     saved_by_this_run: Cell<bool>,
     /// Duration of the last save.
     saving: Cell<Option<Duration>>,
@@ -44,8 +45,8 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Checks before the render that its files can be written. Discards saved work only with
-    /// `--restart`.
+    /// Checks that its files can be written before the render starts. Discards saved work only if
+    /// `--restart` is given.
     pub fn new(args: &RenderArgs, output: &Path, registry: &mut FileRegistry) -> Result<Self, Failure> {
         let work = &args.work;
         let (path, option) = match (&work.checkpoint, work.shard) {
@@ -54,7 +55,7 @@ impl Autosave {
             _ => (with_suffix(output, ".part"), "--checkpoint (default PICTURE.part)"),
         };
         let wanted = work.shard.is_some() || work.checkpoint.is_some();
-        // A stream has no folder in which to put a checkpoint.
+        // A stream has no folder that could hold a checkpoint.
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
         let destination = match work.no_checkpoint || beside_stream {
             true => None,
@@ -72,11 +73,11 @@ impl Autosave {
             Some(destination) if !destination.is_stream() => read_saved_work(args, destination.path())?,
             _ => None,
         };
-        // With --watch, the picture grows while it is rendered.
+        // With --watch, the picture on disk grows while it is being rendered.
         let growing = args.watch && !output.starts_with("/dev") && args.view.show == ["color"];
         let growing = growing.then(|| Ok::<_, Failure>((Destination::new(output)?, format(output)?))).transpose()?;
         let preview = work.preview.as_ref().map(|path| {
-            // Check the format first, because the name can be invalid.
+            // Check the format first because the name can be invalid.
             let format = format(path)?;
             Ok::<_, Failure>((registry.register_output("--preview", path)?, format))
         });
@@ -97,7 +98,7 @@ impl Autosave {
         })
     }
 
-    /// Returns the saved work if it belongs to this render, otherwise `fresh`.
+    /// Returns the saved work if it belongs to this render, and `fresh` otherwise.
     pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
         let (Some(saved), Some(destination)) = (self.saved.take(), &self.destination) else { return Ok(fresh) };
         let name = destination.path().display();
@@ -110,14 +111,14 @@ impl Autosave {
         Ok(*saved)
     }
 
-    /// Saves the work and the preview if they are due.
+    /// Saves the work and the preview if it is time to do so.
     pub fn watch(&self, part: &PartialRender, moment: RenderEvent) {
         let due = self.start.elapsed() >= self.first_save_after && self.is_worth_saving(part);
         if let Some(destination) = self.destination.as_ref().filter(|destination| due && !destination.is_stream()) {
             let before = Instant::now();
             match save_part(destination, part) {
                 Ok(()) => self.saved_by_this_run.set(true),
-                // Do not abort: the picture can still be saved elsewhere.
+                // Do not abort, because the picture can still be saved elsewhere.
                 Err(error) => self.warn_once(&error),
             }
             self.saving.set(Some(before.elapsed()));
@@ -147,7 +148,7 @@ impl Autosave {
         }
     }
 
-    /// Writes the finished part file of `--shard`.
+    /// Writes the finished part file that `--shard` produces.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(destination) = &self.destination else { return Ok(()) };
         progress::saving();
@@ -156,8 +157,8 @@ impl Autosave {
         Ok(())
     }
 
-    /// Removes saved work that is no longer needed, after the picture was written. Keeps unfinished
-    /// work if the user asked for it.
+    /// After the picture has been written, removes saved work that is no longer needed. Unfinished
+    /// work is kept if the user asked for it.
     pub fn done(&self, part: &PartialRender, finished: bool) {
         let Some(destination) = &self.destination else { return };
         if !finished && (self.is_output || self.resume) {
@@ -168,8 +169,8 @@ impl Autosave {
             || self.saved_by_this_run.get()
             || read_part(destination.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Remove only work on this picture, or work that `--restart` discards. If that fails,
-            // the file is useless but harmless.
+            // Remove only work on this picture, or work that `--restart` discards. If the removal
+            // fails, the file is useless but harmless.
             let _ = std::fs::remove_file(destination.path());
         }
     }
@@ -196,8 +197,8 @@ impl Autosave {
     }
 }
 
-/// Reads earlier work to continue. Fails if the file is not a part file, or if it holds unfinished
-/// work and neither `--resume` nor `--restart` is given.
+/// Reads earlier work in order to continue it. Fails if the file is not a part file. Also fails if
+/// it holds unfinished work and neither `--resume` nor `--restart` is given.
 fn read_saved_work(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
     let name = path.display();
     if !path.exists() {
@@ -218,8 +219,8 @@ fn read_saved_work(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialR
         }
         (Err(failure), _) => return Err(failure),
     };
-    // A finished shard is an output, like a picture. Other part files are removed when the picture
-    // is written.
+    // A finished shard is an output, like a picture. Other part files are removed once the picture
+    // has been written.
     if work.shard.is_some() && part.is_finished() {
         return Ok(None);
     }
@@ -232,8 +233,8 @@ fn percent(part: &PartialRender) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Checks that a part file can be written here: the file must not exist, or be empty or a part
-/// file.
+/// Checks that a part file can be written to this path. Either the file does not exist, or it is
+/// empty or a part file.
 fn check_is_part(path: &Path) -> Result<(), String> {
     let start = match start_of(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
@@ -247,7 +248,7 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes a part file. Replaces only part files.
+/// Writes a part file. Replaces an existing file only if it is a part file.
 fn save_part(destination: &Destination, part: &PartialRender) -> Result<(), String> {
     if !destination.is_stream() {
         check_is_part(destination.path())?;

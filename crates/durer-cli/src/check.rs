@@ -1,4 +1,4 @@
-//! `durer check`: finds and fixes mistakes in scenes.
+//! Implements `durer check`, which finds and fixes mistakes in scenes.
 
 mod args;
 mod change;
@@ -72,7 +72,7 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Fai
                 registry.register_input(path)?;
                 registry.register_output("--output", other)?
             }
-            // Without --output, the scene itself is replaced.
+            // Without --output, the scene file itself is replaced.
             None => registry.register_output("--fix", path)?,
         };
         checked.referenced_files.iter().try_for_each(|named| registry.register_input(named))?;

@@ -1,4 +1,4 @@
-//! `durer compare`: compares pictures with references.
+//! Implements `durer compare`, which compares pictures with references.
 
 mod args;
 mod compared_pair;
@@ -27,8 +27,8 @@ use pixel_hit::pixel_hits;
 use stage::{ReferenceScene, stage};
 use std::path::{Path, PathBuf};
 
-/// Runs `durer compare`. Failures have the exit code of invalid input, because 1 means that
-/// pictures differ.
+/// Runs `durer compare`. Failures use the exit code for invalid input because 1 means that pictures
+/// differ.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     work(args).map_err(|failure| match failure {
         Failure::Other(error) => Failure::Input(Some(error.to_string())),
@@ -112,7 +112,7 @@ fn explain(
             continue;
         };
         let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(invalid_input)?;
-        // Open the scene once per reference, because all pictures of a class share it.
+        // Open the scene only once per reference because all pictures of a class share it.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
             stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, registry)?));
@@ -145,7 +145,7 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> ComparedPair {
     }
 }
 
-/// Reads two pictures. Checks their sizes and the memory limit before decoding.
+/// Reads a pair of pictures. Checks their sizes and the memory limit before decoding them.
 fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     let [a, b] = paths.map(|path| {
         let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());

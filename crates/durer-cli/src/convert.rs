@@ -1,4 +1,4 @@
-//! `durer convert`: writes scenes and meshes in other formats.
+//! Implements `durer convert`, which writes scenes and meshes in other formats.
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -57,9 +57,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         return Err(invalid_input(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
-    // Write only the model: the renderer adds a missing camera and lights later.
+    // Write only the model, because the renderer adds a missing camera and lights later.
     options.scene_defaults.convert_only = as_scene.is_some();
-    // A camera in a file has no image size, so frame the model for a square picture.
+    // A camera in a file has no image size, so the model is framed for a square picture.
     options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
@@ -92,7 +92,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !loaded.scene.assets.has_in_memory() {
         return output::save(&[(&destination, text(&loaded.scene))], false);
     }
-    // A text scene refers to files, so write those of a model to a folder named after the output.
+    // A text scene refers to other files, so the files of a model are written to a folder named
+    // after the output.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
     let folder = sanitize_name(&stem);
     if folder == name {
@@ -121,7 +122,7 @@ fn is_only_read(name: &str) -> bool {
     mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
-/// Returns the render options that a file contains, if any.
+/// Returns the render options stored in a file, if there are any.
 fn requested_picture(render_defaults: &RenderDefaults) -> Option<String> {
     let size = render_defaults.size.map(|(width, height)| format!("--size {width}x{height}"));
     let crop = render_defaults.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));

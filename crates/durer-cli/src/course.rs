@@ -1,4 +1,4 @@
-//! `durer course`: accepts the command lines of the course's programs.
+//! Implements `durer course`, which accepts the command lines of the course's programs.
 
 mod options;
 mod year;
@@ -45,10 +45,10 @@ pub struct CourseArgs {
     pub arguments: Vec<String>,
 }
 
-/// Memory limit. The course's programs have no option for it.
+/// Memory limit. The course's programs have no option for this.
 const MEMORY: Memory = Memory::Percent(80.0);
 
-/// Runs `durer course`. `program_name` is the official program that is emulated, if any.
+/// Runs `durer course`. `program_name` is the official program to emulate, if there is one.
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
     if arguments.is_empty() || arguments.iter().any(|a| a == "--help" || a == "-h" || a == "-help") {
         usage();
@@ -59,7 +59,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let options = load_options(&parsed, program_name)?;
     parsed.check_unknown(options.dialect, quiet)?;
     let scene = parsed.text("-input").ok_or_else(|| invalid_input("-input is missing: give the scene file"))?;
-    // Report invalid file names before the render.
+    // Report invalid file names before the render starts.
     let mut registry = FileRegistry::default();
     let outputs = Outputs::of(&parsed, options.dialect, &mut registry)?;
     let compiled = year::open(Path::new(scene), &options, &parsed, &mut registry)?;
@@ -172,8 +172,8 @@ impl Outputs {
     }
 }
 
-/// Returns the format for a file name. As in the course's programs, names without an extension are
-/// TGA; in the dialect f12a4, so is every name that does not end in .bmp.
+/// Returns the picture format for a file name. As in the course's programs, names without an
+/// extension mean TGA. In the dialect f12a4, every name that does not end in .bmp means TGA.
 fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
     let is_tga = nameless || requested == Some(Dialect::F12a4) && !name.ends_with(".bmp");
@@ -183,8 +183,8 @@ fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Form
 fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
     let rules = &compiled.loaded.rules;
     let size = arguments.numbers::<u32>("-size", 2)?;
-    // A camera with a fixed aspect ratio determines the size. The course's programs have no such
-    // camera.
+    // A camera with a fixed aspect ratio determines the size of the picture. The course's programs
+    // do not have such a camera.
     let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
@@ -206,7 +206,7 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(invalid_input("-depth needs two different numbers"));
     }
-    // For an empty range the course's program divides zero by zero and writes black, as if all
+    // For an empty range, the course's program divides zero by zero and writes black, as if all
     // depths were beyond the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
@@ -247,9 +247,9 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
 /// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OddSize {
-    /// Three times as wide and high: every sub-pixel is a pixel.
+    /// Three times the width and height, with one pixel for every sub-pixel.
     Threefold,
-    /// A third as wide and high: each pixel is the mean of 3 by 3 pixels.
+    /// A third of the width and height, where each pixel is the mean of 3 by 3 pixels.
     Third,
 }
 

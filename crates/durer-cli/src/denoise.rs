@@ -1,4 +1,5 @@
-//! `--denoise`: Open Image Denoise if it is installed, otherwise the built-in denoiser.
+//! Implements `--denoise` with Open Image Denoise if it is installed, and with the built-in
+//! denoiser otherwise.
 
 mod oidn;
 
@@ -24,7 +25,7 @@ pub enum Denoiser {
 impl Denoiser {
     const NAMES: [&'static str; 3] = ["auto", "oidn", "own"];
 
-    /// Returns a parser for the names of denoisers.
+    /// Returns a parser for denoiser names.
     pub fn parser() -> impl TypedValueParser<Value = Denoiser> {
         PossibleValuesParser::new(Denoiser::NAMES).map(|name| match name.as_str() {
             "oidn" => Denoiser::Oidn,
@@ -53,6 +54,6 @@ impl Denoiser {
     }
 }
 
-/// Advice on how to install Open Image Denoise.
+/// Advice about installing Open Image Denoise.
 const INSTALL_HINT: &str = "to install Open Image Denoise, run `pip install pyoidn` and set OIDN_DIR to its folder \
                    `pyoidn/oidn`, or to any other folder with the library; `--denoise=own` needs no library";

@@ -1,4 +1,4 @@
-//! Options for the conversion to 8-bit pictures.
+//! Options for converting to 8-bit pictures.
 
 use crate::failure::{Failure, invalid_input};
 use clap::Args;
@@ -37,7 +37,7 @@ pub struct ExposureArgs {
 }
 
 impl ExposureArgs {
-    /// Returns the factor by which radiance is multiplied.
+    /// Returns the factor by which radiance values are multiplied.
     pub fn factor(&self) -> Result<f32, Failure> {
         let stops = self.exposure;
         if !(stops.is_finite() && stops.abs() <= 60.0) {
@@ -56,8 +56,8 @@ impl ExposureArgs {
 /// Returns the pixel value that a camera records for 1 cd/m², relative to white.
 ///
 /// Source: Lagarde and de Rousiers, *Moving Frostbite to Physically Based Rendering*, SIGGRAPH 2014
-/// course, section 5.1.2. White is 78 / (0.65 S) N² / t, from ISO 12232 and a lens that transmits
-/// 0.65 of the light.
+/// course, section 5.1.2. White corresponds to 78 / (0.65 S) N² / t, which follows from ISO 12232
+/// for a lens that transmits 0.65 of the light.
 fn by_camera(shutter: f32, f_number: f32, iso: f32) -> f32 {
     shutter * iso / (1.2 * 100.0 * f_number * f_number)
 }
@@ -76,7 +76,7 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 impl DisplayArgs {
-    /// Returns exposure, tone mapping curve and transfer curve.
+    /// Returns the exposure, the tone mapping curve and the transfer curve.
     pub fn display(&self) -> Result<Display, Failure> {
         let exposure = self.exposure.factor()?;
         Ok(Display { exposure, tone: Tone::from_name(&self.tone).unwrap_or_default(), transfer: self.transfer() })

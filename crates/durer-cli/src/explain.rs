@@ -1,4 +1,4 @@
-//! `durer explain`: explains the colour of a pixel.
+//! Implements `durer explain`, which explains the colour of a pixel.
 
 mod page;
 
@@ -70,7 +70,7 @@ pub struct ExplainArgs {
     pub html: Option<PathBuf>,
 }
 
-/// Splits the numbers of a quoted `--ray` into separate words, because clap would treat `-1 0 0` as
+/// Splits the numbers of a quoted `--ray` into separate words because clap would treat `-1 0 0` as
 /// an option.
 pub fn split_ray_argument(words: Vec<OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::with_capacity(words.len());
@@ -105,7 +105,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let subject = subject(args, &compiled, &job, picture.as_ref(), counts.as_ref())?;
     let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
-    // Show a single tree: the rays of all samples of a pixel would hide each other.
+    // Show a single tree because the rays of all samples of a pixel would hide each other.
     let sample = match &subject {
         Explained::Pixel(pixel) => match (args.sample, args.worst) {
             (Some(sample), _) => sample as usize,
@@ -140,7 +140,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Renders the whole picture; with adaptive sampling, also returns the number of samples per pixel.
+/// Renders the whole picture. With adaptive sampling, also returns the number of samples per pixel.
 fn picture(args: &ExplainArgs, compiled: &CompiledInput, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
     let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
@@ -189,7 +189,7 @@ fn subject(
         )));
     }
     let world = &compiled.world;
-    // With adaptive sampling, a crop has different sample counts from the whole picture.
+    // With adaptive sampling, a crop has different sample counts than the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
     let explanation = explain_samples(world, job, pixel, samples).map_err(from_render_error)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
@@ -199,13 +199,13 @@ fn subject(
     Ok(Explained::Pixel(explanation))
 }
 
-/// Returns the sample count of a pixel, if it is known.
+/// Returns the number of samples of a pixel if it is known.
 fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
     counts.map(|counts| at(counts, x, y).x as u32)
 }
 
-/// Returns the brightest firefly: of the pixels that differ most from their neighbours, the one
-/// with the largest contribution of a single sample.
+/// Returns the brightest firefly. Among the pixels that differ most from their neighbours, this is
+/// the one with the largest contribution of a single sample.
 fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let pixels = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
@@ -217,7 +217,7 @@ fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&I
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
         let explanation = explain_samples(&compiled.world, job, (x, y), samples).map_err(from_render_error)?;
-        // Pixels at the edge of a visible light are bright too, but not fireflies.
+        // Pixels at the edge of a visible light are also bright, but they are not fireflies.
         let outlier_weight = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| outlier_weight * adds);
         if best.as_ref().is_none_or(|(most, _)| adds > *most) {
@@ -243,7 +243,8 @@ fn deviation_from_neighbours(picture: &Image, x: u32, y: u32) -> f64 {
     (luminance_of(at(picture, x, y)) - middle).abs()
 }
 
-/// Returns the pixel with the greatest value; of equal ones, the first in reading order.
+/// Returns the pixel with the greatest value. If several are equal, returns the first in reading
+/// order.
 fn max_pixel(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     let pixels = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut best = ((0, 0), f64::NEG_INFINITY);
@@ -256,7 +257,7 @@ fn max_pixel(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     best.0
 }
 
-/// Formats a share as a percentage.
+/// Formats a fraction as a percentage.
 fn percentage(share: f32) -> String {
     match 100.0 * share {
         0.0 => "0 %".into(),
@@ -279,7 +280,7 @@ pub fn format_line(line: &TextLine, colored: bool, transfer: Transfer) -> String
     };
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
-        // Dim remarks and terms that contribute nothing.
+        // Show remarks and terms that contribute nothing in a dim colour.
         (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.equals(0.0)) => {
             format!("{indent}\x1b[2m{text}\x1b[0m")
         }

@@ -1,42 +1,43 @@
-//! Failures of a command and their exit codes.
+//! Failures of commands, and their exit codes.
 
 use crate::terminal::{OTHER_FAILURE, print_error_line};
 use durer::render::RenderError;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// Exit code for an invalid scene, option or other input.
+/// Exit code for an invalid scene, an invalid option or other invalid input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of `durer compare` if pictures differ. As with `cmp` and `diff`, 1 means differences
-/// and 2 means errors.
+/// Exit code of `durer compare` if the pictures differ. As with `cmp` and `diff`, 1 means
+/// differences and 2 means errors.
 const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` if it reports warnings or errors.
 const FINDINGS: u8 = 1;
 
-/// Number of the last signal; 2 is Ctrl-C.
+/// Number of the last signal. Ctrl-C is signal 2.
 static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
-/// Records the signal that interrupted the work. As in shells, the exit code is 128 plus its
-/// number: 130 for Ctrl-C.
+/// Records the signal that interrupted the work. As in shells, the exit code is 128 plus the number
+/// of the signal, which is 130 for Ctrl-C.
 pub fn interrupted_by(signal: u8) {
     SIGNAL.store(signal, Relaxed);
 }
 
-/// Reason why a command fails, which determines its message and its exit code.
+/// Reason for the failure of a command. It determines the message and the exit code.
 pub enum Failure {
-    /// Invalid input: diagnostics were already printed, or the message says why.
+    /// The input is invalid. Either diagnostics were already printed, or the message gives the
+    /// reason.
     Input(Option<String>),
     /// Any other error.
     Other(anyhow::Error),
-    /// `durer compare` found differences, which are already printed.
+    /// `durer compare` found differences, which have already been printed.
     Different,
-    /// `durer check` found problems, which are already printed.
+    /// `durer check` found problems, which have already been printed.
     FindingsReported,
-    /// The user interrupted the work; the message says what was saved.
+    /// The user interrupted the work. The message says what was saved.
     Interrupted(String),
 }
 
 impl Failure {
-    /// Prints the failure and returns the exit code.
+    /// Prints a message about the failure and returns the exit code.
     pub fn report(self) -> u8 {
         match self {
             Failure::Input(message) => {

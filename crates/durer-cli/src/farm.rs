@@ -1,4 +1,5 @@
-//! `durer farm`: prints job files for render farms, based on `--shard` and `durer merge`.
+//! Implements `durer farm`, which prints job files for render farms, based on `--shard` and `durer
+//! merge`.
 
 mod quote;
 
@@ -45,18 +46,18 @@ pub struct FarmArgs {
     pub options: Vec<String>,
 }
 
-/// Runs `durer farm`: prints the job file.
+/// Runs `durer farm` and prints the job file.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
     print_line(job_file(args)?.trim_end());
     Ok(())
 }
 
-/// Maximum length of a job name in characters. Kubernetes allows 63, including the index of the
-/// task.
+/// Maximum length of a job name in characters. Kubernetes allows 63 characters, including the index
+/// of the task.
 const MAX_NAME_LENGTH: usize = 52;
 
-/// Returns the name of a job, with letters, digits and dashes only.
+/// Returns the name of a job, which contains only letters, digits and dashes.
 fn job_name(stem: &str) -> String {
     let allowed = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let name: String = stem.trim_matches(|c: char| !c.is_ascii_alphanumeric()).chars().map(allowed).collect();
@@ -88,7 +89,7 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     let Some(tasks) = numbers.count().checked_mul(shards) else {
         return Err(invalid_input(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
     };
-    // The animation as command-line words, and as an expression in the template's language.
+    // The animation, both as command-line words and as an expression in the template language.
     let (moving, words) = match moves {
         MotionSource::Turntable(count) => {
             (format!("--turntable {count} "), format!(r#", "--turned", str(360 * frame / {count})"#))
@@ -118,7 +119,7 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
 
 /// Checks that the options are valid for `durer render`.
 fn check_options(options: &[String]) -> Result<(), Failure> {
-    // A shard needs an output, which the template adds.
+    // A shard needs an output file, and the template adds it.
     let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
@@ -134,8 +135,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// Keeps the lines for this kind of job. Lines that begin with `@frames` are for animations, lines
-/// that begin with `@still` for single pictures.
+/// Keeps the template lines for this kind of job. Lines that begin with `@frames` are for
+/// animations, and lines that begin with `@still` are for single pictures.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));
@@ -146,8 +147,8 @@ fn chosen(template: &str, frames: bool) -> String {
         .collect()
 }
 
-/// Replaces each `@KEY@` in a template by its value, in one pass, so that values are not expanded
-/// again.
+/// Replaces each `@KEY@` in a template by its value, in a single pass so that values are not
+/// expanded again.
 fn filled(template: &str, values: &[(&str, String)]) -> String {
     let (mut name, mut rest) = (String::new(), template);
     while let Some((before, after)) = rest.split_once('@') {

@@ -1,9 +1,9 @@
-//! Tracks the input and output files of a run: no file can be both, and no output can be named
+//! Tracks the input and output files of a run. No file can be both, and no output can be named
 //! twice.
 //!
 //! Every file that the user names is registered here, and [`crate::output`] writes only registered
-//! files. Files are compared by identity, so that different names of and links to the same file are
-//! recognised.
+//! files. Files are compared by identity, so that different names of the same file and links to it
+//! are recognised.
 
 use crate::failure::{Failure, invalid_input};
 use durer::image::Destination;
@@ -11,26 +11,27 @@ use durer::render::PartialRender;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Input and output files of one run, registered to prevent that an input is overwritten.
+/// Input and output files of one run. They are registered so that no input is overwritten.
 #[derive(Default)]
 pub struct FileRegistry {
     inputs: Vec<NamedFile>,
     outputs: Vec<NamedFile>,
 }
 
-/// A registered file, the option that names it, and its identity.
+/// A registered file, the option that names it, and the identity of the file.
 struct NamedFile {
     option: &'static str,
     path: PathBuf,
     identity: Identity,
 }
 
-/// Identity of a file, by which different names of the same file are recognised.
+/// Identity of a file, which shows that different names refer to the same file.
 #[derive(PartialEq)]
 struct Identity {
-    /// Canonical path. For a file that does not exist yet, its name in the canonical folder.
+    /// Canonical path. For a file that does not exist yet, the identity is its name in the
+    /// canonical folder.
     name: Option<PathBuf>,
-    /// Device and inode number, which are equal for hard links.
+    /// Device and inode numbers, which are equal for hard links.
     inode: Option<(u64, u64)>,
 }
 
@@ -62,7 +63,7 @@ fn inode(_: &Path) -> Option<(u64, u64)> {
 }
 
 impl FileRegistry {
-    /// Registers an input. Fails if the file is also an output.
+    /// Registers an input file. Fails if the file is already registered as an output.
     pub fn register_input(&mut self, path: &Path) -> Result<(), Failure> {
         let input = NamedFile { option: "", path: path.into(), identity: Identity::of(path) };
         if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
@@ -72,8 +73,8 @@ impl FileRegistry {
         Ok(())
     }
 
-    /// Registers an output for the option `what`. Fails if the file cannot be written, is an input
-    /// or another output, or holds saved work.
+    /// Registers the output file of the option `what`. Fails if the file cannot be written, is an
+    /// input or another output, or holds saved work.
     pub fn register_output(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         let place = self.register_saved_work(what, path)?;
         match is_saved_work(path) {
@@ -85,7 +86,7 @@ impl FileRegistry {
         }
     }
 
-    /// Registers an output for saved work, which can replace older saved work.
+    /// Registers an output file for saved work, which may replace older saved work.
     pub fn register_saved_work(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.register_removal(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
@@ -95,14 +96,14 @@ impl FileRegistry {
         Ok(Destination::new(path)?)
     }
 
-    /// Registers a file that is removed, or written through another registration.
+    /// Registers a file that is only removed, or that is written through another registration.
     pub fn register_removal(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
         let output = NamedFile { option: what, path: path.into(), identity: Identity::of(path) };
         let same = |other: &&NamedFile| other.identity.is_same(&output.identity);
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
         }
-        // Devices and pipes can be named twice.
+        // Devices and pipes may be named twice.
         let file = !path.exists() || path.is_file();
         if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
             let (what, first) = (output.option, other.option);
@@ -118,11 +119,11 @@ impl FileRegistry {
 
 /// Returns true if a file is a part file.
 fn is_saved_work(path: &Path) -> bool {
-    // Opening a FIFO would block.
+    // Opening a FIFO would block the program.
     path.is_file() && start_of(path).is_ok_and(|start| start == PartialRender::MAGIC)
 }
 
-/// Reads the first bytes of a file, at most the length of [`PartialRender::MAGIC`].
+/// Reads the first bytes of a file, up to the length of [`PartialRender::MAGIC`].
 pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut start = Vec::new();
     std::fs::File::open(path)?.take(PartialRender::MAGIC.len() as u64).read_to_end(&mut start)?;

@@ -1,4 +1,5 @@
-//! `--frames` and `--turntable`: renders the pictures of an animation, one file each.
+//! Implements `--frames` and `--turntable`, which render the pictures of an animation to one file
+//! each.
 
 use crate::failure::{Failure, invalid_input};
 use crate::options::RenderArgs;
@@ -25,7 +26,7 @@ pub struct FramesArgs {
     pub turntable: Option<u16>,
 }
 
-/// Range of frame numbers given with `--frames`: first, last and step.
+/// Range of frame numbers given by `--frames`: first frame, last frame, and step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frames {
     pub first: u32,
@@ -60,13 +61,13 @@ impl Frames {
     }
 }
 
-/// Parses a frame rate: a number above 0.
+/// Parses a frame rate, which must be greater than 0.
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|&rate: &f64| rate.is_finite() && rate > 0.0);
     rate.ok_or("expected a number above 0".into())
 }
 
-/// Source of the change between the frames of an animation.
+/// Source of the changes between the frames of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionSource {
     /// The camera rotates once around the model in this many frames.
@@ -78,16 +79,16 @@ pub enum MotionSource {
 }
 
 impl FramesArgs {
-    /// Returns true if an animation is requested.
+    /// Returns true if the options request an animation.
     pub fn is_requested(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// Returns the requested frames and what changes between them; `None` if no animation is
-    /// requested. `names` are texts that can contain a placeholder for the frame number.
+    /// Returns the requested frames and what changes between them, or `None` if no animation is
+    /// requested. `names` are the texts that can contain a placeholder for the frame number.
     ///
     /// # Errors
-    /// Fails if all frames would be equal.
+    /// Fails if all frames would be the same.
     pub fn resolve(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, MotionSource)>, Failure> {
         let all = |count: u16| Frames { first: 0, last: u32::from(count) - 1, step: 1 };
         let Some(frames) = self.frames.or(self.turntable.map(all)) else { return Ok(None) };
@@ -107,7 +108,7 @@ impl FramesArgs {
     }
 }
 
-/// Finds the first `%d` or `%04d` in a name. Returns start, end, and number of digits.
+/// Finds the first `%d` or `%04d` in a name. Returns its start, its end, and the number of digits.
 pub fn place(name: &str) -> Option<(usize, usize, usize)> {
     name.match_indices('%').find_map(|(from, _)| {
         let digits: String = name[from + 1..].chars().take_while(char::is_ascii_digit).collect();
@@ -125,7 +126,8 @@ pub fn numbered(name: &str, frame: u32) -> String {
     }
 }
 
-/// Returns the file name pattern of an animation: `picture.png` becomes `picture.%04d.png`.
+/// Returns the file name pattern of an animation. For example, `picture.png` becomes
+/// `picture.%04d.png`.
 pub fn pattern(path: &str) -> String {
     if place(path).is_some() {
         return path.into();
@@ -151,7 +153,7 @@ pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) =
         (scene_defaults.camera.clone(), scene_defaults.view_file.as_deref().map(utf8).transpose()?);
-    // Read meshes and images that frames share only once.
+    // Read the meshes and images that frames share only once.
     let cache = Arc::new(AssetCache::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));

@@ -1,4 +1,4 @@
-//! `durer info`: prints a summary of a scene.
+//! Implements `durer info`, which prints a summary of a scene.
 
 use crate::failure::Failure;
 use crate::file_registry::FileRegistry;
@@ -119,7 +119,7 @@ fn mib(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// Formats the fields of an object, except those in `except`.
+/// Formats the fields of an object, except the fields in `except`.
 fn fields<T: DescribedKind>(item: &T, except: &[&str]) -> String {
     let wanted = item.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
     let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&item.get(i)?))));
@@ -147,13 +147,13 @@ struct WorldCounts {
     bytes: usize,
     picture_bytes: usize,
     tree_bytes: usize,
-    /// Sum over meshes of the BVH cost times the number of triangles.
+    /// Sum over all meshes of the BVH cost times the number of triangles.
     costs: f64,
     object_cost: Option<f64>,
 }
 
 impl WorldCounts {
-    /// Adds a mesh. Memory that several objects share is counted once.
+    /// Adds a mesh to the totals. Memory that several objects share is counted only once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {
@@ -165,7 +165,7 @@ impl WorldCounts {
         }
     }
 
-    /// Returns the expected cost of a random ray in the BVH of a mesh, averaged over triangles.
+    /// Returns the expected cost of a random ray in the BVH of a mesh, averaged over all triangles.
     fn tree_cost(&self) -> Option<f64> {
         let cost = self.costs / self.distinct_triangles as f64;
         cost.is_finite().then_some(cost)

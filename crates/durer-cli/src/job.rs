@@ -11,14 +11,14 @@ use durer::job::{OutputSelection, RenderJob};
 use durer::render::{Job, Sampling};
 use durer::world::World;
 
-/// Returns the job for the options. Without `view`, it renders the whole colour picture. `timed` is
-/// true if a time limit ends the render.
+/// Returns the job for the options. Without `view`, the job renders the whole colour picture.
+/// `timed` is true if a time limit ends the render.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed: bool) -> Result<Job, Failure> {
     let view = view.map(|view| OutputSelection { crop: view.crop, show: view.show.clone() });
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(invalid_input)
 }
 
-/// Warns if the camera leaves part of the picture empty, or if depth of field needs more samples.
+/// Warns if the camera leaves part of the picture empty or if depth of field needs more samples.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
@@ -38,8 +38,8 @@ pub fn warn(job: &Job, world: &World) {
     }
 }
 
-/// Returns the command-line options that reproduce a job, except its size. Options that equal the
-/// scene's defaults are omitted.
+/// Returns the command-line options that reproduce a job, except the picture size. Options that are
+/// equal to the scene's defaults are omitted.
 pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &LoadedScene) -> String {
     let requested = loaded.guess.is_none();
     let mut words: Vec<String> = Vec::new();

@@ -1,4 +1,4 @@
-//! Renders pictures that are larger than memory while they are written.
+//! Renders pictures that are larger than memory and writes them at the same time.
 
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::options::RenderArgs;
@@ -14,12 +14,12 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// Returns true if a picture exceeds the memory limit, or the maximum size of pictures in memory.
+/// Returns true if a picture exceeds the memory limit or the maximum size of pictures in memory.
 pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
     job.window().pixels() > MAX_PIXELS || memory.is_some_and(|memory| needed > memory)
 }
 
-/// Divides a large picture into bands. Fails with the reason if that is not possible.
+/// Divides a large picture into bands. Fails with the reason if this is not possible.
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<BandedRender, Failure> {
     let refuse = |why: &str| Err(from_render_error(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
@@ -42,7 +42,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
             return refuse(&format!("{option} needs the full picture in memory"));
         }
     }
-    // The scene's size is not known yet, so reserve half of the memory for it.
+    // The memory that the scene needs is not known yet, so half of the memory is reserved for it.
     BandedRender::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
             from_render_error(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
@@ -51,17 +51,18 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     })
 }
 
-/// Statistics and hash of a written picture, or an error.
+/// Statistics and hash of a picture that was written, or an error.
 type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
-/// Source of a large picture's file content: renders the picture in bands while it is written.
+/// Source of the file contents of a large picture. It renders the picture in bands while the file
+/// is written.
 struct BandedPicture<'a> {
     bands: &'a BandedRender,
     world: &'a World,
     control: &'a Control,
     format: &'a Format,
     options: WriteOptions<'a>,
-    /// Result of the render, set by `write_to`.
+    /// Result of the render. `write_to` sets it.
     result: RefCell<Option<WriteResult>>,
 }
 

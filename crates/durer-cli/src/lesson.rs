@@ -1,4 +1,4 @@
-//! `durer lesson`: writes a lesson about a scene to a folder.
+//! Implements `durer lesson`, which writes a lesson about a scene to a folder.
 
 mod folder;
 mod markdown;
@@ -61,7 +61,7 @@ pub struct LessonArgs {
     pub quiet: bool,
 }
 
-/// Default length of the longer side of the pictures, in pixels.
+/// Default length of the longer side of a picture, in pixels.
 const SIDE: u32 = 256;
 /// Runs `durer lesson`.
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
@@ -91,7 +91,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
-    // Nothing has been written yet, so Ctrl-C can end the program here.
+    // Nothing has been written yet, so Ctrl-C may end the program here.
     let pages = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
         let steps = teacher.steps(topic, &control).map_err(from_render_error)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))

@@ -1,4 +1,4 @@
-//! The `durer` command-line program, a thin layer over the library.
+//! The `durer` command-line program, which is a thin layer over the library.
 
 mod args;
 mod autosave;
@@ -50,9 +50,9 @@ use std::path::Path;
 #[cfg(unix)]
 pub use terminal::check_standard_output;
 
-/// Executes a command line, whose first word is the program's name, and returns the exit code.
-/// Handles signals. `end` is called to end the process at once with an exit code: after a second
-/// Ctrl-C, or if standard output cannot be written to.
+/// Executes a command line whose first word is the program's name, and returns the exit code.
+/// Handles signals. `end` is called in order to end the process at once with an exit code. This
+/// happens after a second Ctrl-C or if writing to standard output fails.
 pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     terminal::set_end(end);
     progress::handle_signals();
@@ -97,12 +97,12 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     }
 }
 
-/// Parses a command line. Prints help like other output, so that write errors are reported.
+/// Parses a command line. Help is printed like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
     Cli::try_parse_from(&words).unwrap_or_else(|error| {
         let error = option_hints::with_hint(error, &words, &Cli::command());
         if error.use_stderr() || std::io::stdout().is_terminal() {
-            // Ignore errors: a closed terminal cannot show a message.
+            // Ignore errors because a closed terminal cannot show a message.
             let _ = error.print();
             terminal::end(u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
         }

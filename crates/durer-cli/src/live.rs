@@ -1,4 +1,4 @@
-//! `durer live`: shows a scene in the browser.
+//! Implements `durer live`, which shows a scene in the browser.
 
 use crate::failure::{Failure, invalid_input};
 use crate::terminal::print_line;
@@ -34,7 +34,7 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
 
 /// Fails if a file cannot be opened as a scene.
 fn readable(path: &Path) -> Result<(), Failure> {
-    // Opening a pipe would block.
+    // Opening a pipe would block the program.
     let compiled = match std::fs::metadata(path) {
         Ok(metadata) if !metadata.is_file() => return Err(invalid_input(format!("{}: not a file", path.display()))),
         Ok(_) => std::fs::File::open(path).map(drop),
@@ -43,7 +43,7 @@ fn readable(path: &Path) -> Result<(), Failure> {
     compiled.map_err(|error| invalid_input(format!("{}: {error}", path.display())))
 }
 
-/// Serves a lesson that a teacher wrote in Markdown.
+/// Serves a lesson that a teacher has written in Markdown.
 pub fn lesson(path: &Path) -> Result<(), Failure> {
     readable(path)?;
     serve(SessionFiles { file: None, lesson: Some(path.to_path_buf()) }, 0, false)
@@ -57,7 +57,7 @@ fn serve(start: SessionFiles, port: u16, open: bool) -> Result<(), Failure> {
     print_line(&format!("{address}\nPress Ctrl-C to stop"));
     if open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
-        // Ignore errors: the address is printed and can be copied.
+        // Ignore errors because the address is printed and can be copied.
         let _ = Command::new(opener).arg(&address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     }
     crate::progress::idle();

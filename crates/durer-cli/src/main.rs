@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// Runs before Rust's runtime, which replaces a closed standard output with a device that discards
-/// everything.
+/// This function runs before Rust's runtime, which replaces a closed standard output with a device
+/// that discards everything.
 #[cfg(unix)]
 #[ctor::ctor(unsafe)]
 fn before_main() {
@@ -13,7 +13,7 @@ fn before_main() {
 fn main() -> ExitCode {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        // Do not print panics of image decoders, which become errors.
+        // Do not print panics of image decoders because they are converted to errors.
         if !durer::panics::are_expected() {
             print(panic);
         }

@@ -6,7 +6,7 @@ use crate::terminal::print_line;
 use clap::CommandFactory;
 use durer::dialect::{Dialect, Quirk};
 
-/// `durer dialects`: prints the dialects and the quirks.
+/// Implements `durer dialects`, which prints the dialects and the quirks.
 pub fn dialects() -> Result<(), Failure> {
     print_line("Dialects (--dialect NAME):");
     for dialect in Dialect::ALL {
@@ -25,7 +25,7 @@ pub fn dialects() -> Result<(), Failure> {
     Ok(())
 }
 
-/// `durer completions`: prints a shell's completion script.
+/// Implements `durer completions`, which prints a shell's completion script.
 pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "durer", &mut text);
@@ -33,7 +33,8 @@ pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     Ok(())
 }
 
-/// `durer man`: prints the manual page of the command, then those of its subcommands.
+/// Implements `durer man`, which prints the manual page of the command followed by those of its
+/// subcommands.
 pub fn man() -> Result<(), Failure> {
     let mut text = Vec::new();
     let command = Cli::command();

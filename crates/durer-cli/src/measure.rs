@@ -1,4 +1,4 @@
-//! `durer measure`: computes illuminance and irradiance at points.
+//! Implements `durer measure`, which computes illuminance and irradiance at points.
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -63,7 +63,7 @@ pub struct MeasureArgs {
     pub seed: u64,
 }
 
-/// Grid of measuring points on a parallelogram, given with `--grid`.
+/// Grid of measuring points on a parallelogram, as given by `--grid`.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     corner: Vec3,
@@ -71,7 +71,7 @@ pub struct Grid {
     counts: [u32; 2],
 }
 
-/// Maximum number of measuring points.
+/// Largest allowed number of measuring points.
 const MAX_POINTS: usize = 1 << 20;
 
 fn vector(text: &str) -> Result<Vec3, String> {
@@ -98,7 +98,7 @@ impl Grid {
     }
 }
 
-/// Sums over the samples at one measuring point, for mean and standard error.
+/// Sums over the samples at one measuring point, used to compute the mean and its standard error.
 #[derive(Clone, Default)]
 struct Sums {
     light: [f64; 3],
@@ -115,9 +115,9 @@ impl Sums {
     }
 
     /// Returns the mean irradiance per channel, the mean illuminance, and the standard error of the
-    /// latter. `rare` is the largest value of a light that only BSDF sampling finds. One more such
-    /// sample would raise the mean by `rare` over the number of samples, so the error includes that
-    /// amount.
+    /// mean illuminance. `rare` is the largest value of a light that only BSDF sampling can find.
+    /// One more sample of this kind would raise the mean by `rare` divided by the number of
+    /// samples, so the error includes that amount.
     fn mean(&self, samples: u32, rare: f64) -> ([f64; 3], f64, f64) {
         let n = f64::from(samples);
         let mean = self.bright / n;
@@ -127,7 +127,8 @@ impl Sums {
     }
 }
 
-/// Returns the first point that is not on a surface: a short ray along its normal hits nothing.
+/// Returns the first point that is not on a surface. For such a point, a short ray along its normal
+/// hits nothing.
 fn in_the_air(world: &World, points: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
@@ -146,7 +147,7 @@ fn vector_of(v: Vec3) -> String {
 /// Runs `durer measure`.
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
-    // Measure only the scene's own light.
+    // Measure only the light of the scene itself.
     options.scene_defaults.own_light = options.scene_defaults.lighting.is_none();
     let compiled = open(&args.scene, &options, false, &mut FileRegistry::default())?;
     let scene = &compiled.loaded.scene;
@@ -184,7 +185,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
     }
     let mut sums = vec![Sums::default(); points.len()];
-    // Photons are traced again for every sample.
+    // Photons are traced anew for every sample.
     let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {

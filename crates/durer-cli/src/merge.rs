@@ -1,4 +1,4 @@
-//! `durer merge`: merges the parts of a picture.
+//! Implements `durer merge`, which merges the parts of a picture.
 
 use crate::autosave::read_part;
 use crate::display::DisplayArgs;

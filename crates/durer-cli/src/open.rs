@@ -10,16 +10,17 @@ use durer::world::World;
 use durer::{LoadOptions, LoadedScene, load};
 use std::path::Path;
 
-/// A scene that was read and compiled from the command line, with the files that it came from.
+/// A scene that was read and compiled for a command line, with the files that it came from.
 pub struct CompiledInput {
     pub loaded: LoadedScene,
     pub world: World,
     pub files: Files,
-    /// Diagnostics of the reader and the compiler, which were already printed.
+    /// Diagnostics of the reader and the compiler, which have already been printed.
     pub diagnostics: Diagnostics,
 }
 
-/// A scene that was read but not compiled yet. Its diagnostics are printed when it is compiled.
+/// A scene that was read but has not been compiled yet. Its diagnostics are printed when it is
+/// compiled.
 pub struct ParsedInput {
     pub loaded: LoadedScene,
     files: Files,
@@ -46,7 +47,7 @@ pub fn read(
 }
 
 impl ParsedInput {
-    /// Suppresses all diagnostics except errors.
+    /// Suppresses all diagnostics that are not errors.
     pub fn quiet(self) -> Self {
         ParsedInput { quiet: true, ..self }
     }

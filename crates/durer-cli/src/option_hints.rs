@@ -1,4 +1,4 @@
-//! Maps options of other programs to their equivalents in Dürer.
+//! Maps options of other programs to equivalent options of Dürer.
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -32,13 +32,13 @@ const HINTS: &[(&[&str], &str, &str)] = &[
     (&["--jobs", "--cores"], "threads", "use `--threads 4`"),
 ];
 
-/// Replaces clap's suggestion for an unknown option with a hint at the equivalent option.
+/// Replaces clap's suggestion for an unknown option with a hint that names the equivalent option.
 pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
     let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidArg) else { return error };
-    // A long option with a single dash is parsed as several short options.
+    // clap parses a long option with a single dash as several short options.
     let one_dash = |word: &&str| word.starts_with('-') && !word.starts_with("--") && word.len() > 2;
     let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).collect();
     let whole = words.iter().copied().filter(one_dash).find(|word| word.starts_with(given.as_str()));

@@ -124,10 +124,10 @@ pub struct WorkArgs {
     pub shard_by: String,
 }
 
-/// Names of pictures that show the sampling rather than the scene.
+/// Names of pictures that show how the scene is sampled rather than the scene itself.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
-/// Name of the picture of error bounds, which is computed in addition to the render.
+/// Name of the picture of error bounds, which is computed in addition to the rendered picture.
 pub const ERROR: &str = "error";
 
 fn shows() -> Vec<&'static str> {

@@ -17,8 +17,8 @@ pub fn format(path: &Path) -> Result<&'static Format, Failure> {
     format_for(path).map_err(|error| invalid_input(error.to_string()))
 }
 
-/// Returns the layers to write in a format: values for floating-point formats, displayed pictures
-/// for 8-bit formats.
+/// Returns the layers to write in a format. Floating-point formats store values, and 8-bit formats
+/// store displayed pictures.
 fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     match format.depth {
         Depth::Float => &rendered.layers,
@@ -26,17 +26,17 @@ fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     }
 }
 
-/// Output files of a render, one for all pictures or one for each.
+/// Output files of a render: either one for all pictures, or one for each picture.
 pub struct Target {
     format: &'static Format,
-    /// Files, each with the name of its picture; a file without a name holds all pictures. Diagrams
-    /// have their own files, because their sizes differ.
+    /// Files, each with the name of its picture. A file without a picture name holds all pictures.
+    /// Diagrams have files of their own because their sizes differ.
     files: Vec<(Option<String>, Destination)>,
 }
 
 impl Target {
-    /// Prepares the files for the named pictures. Fails before the render if a file could not be
-    /// written.
+    /// Prepares the files for the pictures with the given names. Fails before the render starts if
+    /// a file could not be written.
     pub fn new(path: &Path, names: &[&str], registry: &mut FileRegistry) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
@@ -44,14 +44,14 @@ impl Target {
             return Ok(Target { format, files: vec![(None, registry.register_output("--output", path)?)] });
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy();
-        // Separate files are named picture.depth.png and so on.
+        // Separate files have names such as picture.depth.png.
         let own = |name: &&str| path.with_extension(format!("{name}.{extension}"));
         let files =
             names.iter().map(|name| Ok((Some(name.to_string()), registry.register_output("--output", &own(name))?)));
         Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
-    /// Returns the file and its format, if all pictures share one file.
+    /// Returns the file and its format if all pictures share one file.
     pub fn single(&self) -> Option<(&Destination, &'static Format)> {
         match &self.files[..] {
             [(None, destination)] => Some((destination, self.format)),
@@ -59,8 +59,8 @@ impl Target {
         }
     }
 
-    /// Saves the colours of a part file row by row, without holding the whole picture. Returns a
-    /// scan of the colours, or `None` if the file needs more than colours.
+    /// Saves the colours of a part file row by row, without keeping the whole picture in memory.
+    /// Returns a scan of the colours, or `None` if the file needs data other than colours.
     pub fn save_colors(
         &self,
         part: &PartialRender,
@@ -77,12 +77,12 @@ impl Target {
         Ok(Some(colors.scan.into_inner()))
     }
 
-    /// Checks that the formats support a picture size.
+    /// Checks that the file formats support a picture size.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
         self.format.check_size(width, height).map_err(|error| invalid_input(error.to_string()))
     }
 
-    /// Encodes the pictures as the contents of their files.
+    /// Encodes the pictures to the contents of their files.
     pub fn files(&self, rendered: &Rendered, display: Display) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
@@ -97,12 +97,13 @@ impl Target {
     }
 }
 
-/// Source of a file's content: colours of a part file, encoded while they are written.
+/// Source of a file's content: the colours of a part file, which are encoded while they are
+/// written.
 struct PartColors<'a> {
     part: &'a PartialRender,
     format: &'static Format,
     display: Display,
-    /// Scan of the written colours.
+    /// Scan of the colours that were written.
     scan: RefCell<PictureScan>,
 }
 
@@ -118,7 +119,7 @@ impl Content for &PartColors<'_> {
     }
 }
 
-/// Encodes one file, with attributes if the format supports them.
+/// Encodes one file, including attributes if the format supports them.
 pub fn encode(
     format: &Format,
     layers: &[Layer],
@@ -126,27 +127,27 @@ pub fn encode(
     attributes: &[(&'static str, String)],
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    // Errors such as an unsupported size are due to the user's input.
+    // Errors such as an unsupported size are caused by the user's input.
     let options = WriteOptions { display: display.into(), attributes };
     format.write(layers, &options, &mut bytes).map_err(|error| invalid_input(error.to_string()))?;
     Ok(bytes)
 }
 
-/// Saves all files or none.
+/// Saves either all files or none.
 pub fn save_silently(files: &[(&Destination, Vec<u8>)]) -> Result<(), Failure> {
     progress::saving();
     Ok(save_all(files)?)
 }
 
-/// Saves all files or none, and prints their names.
+/// Saves either all files or none, and prints their names.
 pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     save_silently(files)?;
     files.iter().for_each(|(destination, _)| print_written(destination, quiet));
     Ok(())
 }
 
-/// Prints the name of a written file. Streams are not mentioned, because the picture may be on
-/// standard output.
+/// Prints the name of a file that was written. Streams are not mentioned because the picture may be
+/// on standard output.
 pub fn print_written(destination: &Destination, quiet: bool) {
     if !quiet && !destination.is_stream() {
         print_line(&format!("wrote {}", destination.path().display()));

@@ -1,4 +1,5 @@
-//! Common parts of the HTML pages, which contain pictures and data and need no network.
+//! Common parts of the HTML pages. The pages contain their pictures and data and need no network
+//! access.
 
 use crate::failure::Failure;
 use crate::output::{encode, format};
@@ -25,6 +26,6 @@ const SCRIPT: &str = include_str!("page.js");
 /// Fills in the placeholders `@STYLE@`, `@SCRIPT@` and `@DATA@` of a template.
 pub fn with_data(page: &str, data: &Value) -> String {
     let page = page.replacen("@STYLE@", STYLE, 1).replacen("@SCRIPT@", SCRIPT, 1);
-    // Escape `<`, so that the data cannot end the script element.
+    // Escape `<` so that the data cannot end the script element.
     page.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1)
 }

@@ -1,4 +1,4 @@
-//! `durer photo`: computes cameras and points from photographs.
+//! Implements `durer photo`, which computes cameras and points from photographs.
 
 mod args;
 mod camera;

@@ -1,4 +1,4 @@
-//! Renders one picture, from the scene file to the written files.
+//! Renders one picture, from reading the scene file to writing the picture files.
 
 use crate::autosave::Autosave;
 use crate::failure::{Failure, from_render_error, invalid_input};
@@ -23,17 +23,17 @@ use std::sync::{Arc, Mutex};
 /// State shared between a render and the thread that watches files for `--watch`.
 #[derive(Default)]
 pub struct WatchState {
-    /// Files that the scene refers to, without the scene file itself.
+    /// Files that the scene refers to, except the scene file itself.
     pub files: Mutex<Vec<PathBuf>>,
-    /// True if a file has been saved since the render began.
+    /// True if one of the files has been saved since the render began.
     pub outdated: AtomicBool,
-    /// Meshes and images kept from earlier renders.
+    /// Meshes and images that earlier renders have loaded.
     pub cache: Option<Arc<AssetCache>>,
     control: Mutex<Option<Arc<Control>>>,
 }
 
 impl WatchState {
-    /// Creates a state that keeps meshes and images from one picture to the next.
+    /// Creates a state that keeps meshes and images between pictures.
     pub fn keeping(cache: &Arc<AssetCache>) -> Self {
         WatchState { cache: Some(Arc::clone(cache)), ..WatchState::default() }
     }
@@ -46,7 +46,7 @@ impl WatchState {
         }
     }
 
-    /// Registers a render, so that it can be cancelled.
+    /// Registers a render so that it can be cancelled.
     fn register(&self, control: &Arc<Control>) {
         if let Ok(mut place) = self.control.lock() {
             *place = Some(Arc::clone(control));
@@ -64,7 +64,7 @@ pub struct Pixel {
     pub sample: Option<u32>,
 }
 
-/// Returns the file of the picture: that of `--output` or the default.
+/// Returns the file for the picture, which is the one given by `--output` or the default.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
     let default_name = || with_suffix(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
     args.output.clone().unwrap_or_else(default_name)
@@ -102,7 +102,7 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     let bands = match &target {
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
-            // Report an invalid size as such, whatever the memory limit is.
+            // Report an invalid size as such, regardless of the memory limit.
             checked_count(window.width, window.height).map_err(|error| invalid_input(error.to_string()))?;
             target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
             None
@@ -238,7 +238,7 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     }
 }
 
-/// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample, because it
+/// Saves the work after Ctrl-C. The picture is written only if every pixel has a sample because it
 /// could replace a better one.
 fn save_after_interrupt(
     args: &RenderArgs,
@@ -261,7 +261,8 @@ fn save_after_interrupt(
     })
 }
 
-/// Returns a command that reproduces a panic: this command line with the pixel and sample added.
+/// Returns a command that reproduces a panic. It is this command line with the pixel and sample
+/// added.
 fn replaying(panicked: &Panicked) -> String {
     let words = std::env::args().chain(["--pixel".into(), format!("{},{}", panicked.x, panicked.y)]);
     let sample = panicked.sample.map(|sample| ["--sample".to_string(), sample.to_string()]);
@@ -269,7 +270,7 @@ fn replaying(panicked: &Panicked) -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
 }
 
-/// Prints the colour of a pixel or sample, for `--pixel`.
+/// Prints the colour of a pixel or sample for `--pixel`.
 fn print_pixel(world: &World, job: &Job, control: &Control, pixel: Pixel) -> Result<(), Failure> {
     let Pixel { place: (x, y), sample } = pixel;
     let color = replay(world, job, control, (x, y), sample).map_err(from_render_error)?;

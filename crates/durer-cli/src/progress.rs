@@ -9,26 +9,27 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// Phase of the program, which determines how it reacts to a signal such as Ctrl-C.
+/// Phase of the program. It determines how the program reacts to a signal such as Ctrl-C.
 enum Phase {
-    /// Before anything is written: the signal ends the program.
+    /// Nothing has been written yet, so the signal ends the program.
     BeforeWriting,
-    /// The program waits for changes: the signal ends it without an error.
+    /// The program is waiting for changes, so the signal ends it without an error.
     Idle,
-    /// The signal cancels the render; a second one ends the program.
+    /// The first signal cancels the render, and a second one ends the program.
     Rendering(Arc<Control>),
-    /// The signal takes effect when the files are complete; a second one ends the program. The flag
-    /// is true after the first signal.
+    /// The first signal takes effect when the files are complete, and a second one ends the
+    /// program. The flag is true after the first signal.
     Saving(bool),
 }
 
-/// Signals within this interval count as one, because some programs send a signal to both the
+/// Signals within this interval count as one because some programs send a signal to both the
 /// process and its group.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Current phase. It is locked while it changes, so that no save starts while the program ends.
+/// Current phase. The phase is locked while it changes, so that no save starts while the program
+/// ends.
 static PHASE: Mutex<Phase> = Mutex::new(Phase::BeforeWriting);
-/// Time of the last signal. Repeats within [`SIGNAL_INTERVAL`] do not count.
+/// Time of the last signal. Signals repeated within [`SIGNAL_INTERVAL`] do not count.
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -55,12 +56,12 @@ fn interrupt(signal: u8) {
     }
 }
 
-/// Starts to handle signals. If that fails, signals end the program as usual.
+/// Starts handling signals. If that fails, signals end the program as usual.
 #[cfg(unix)]
 pub fn handle_signals() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // With SIGXFSZ handled, exceeding the file size limit becomes a write error that names the
-    // file.
+    // Because SIGXFSZ is handled, exceeding the file size limit becomes a write error that names
+    // the file.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let ignored = ignored_signals();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(move |signal| ignored >> (signal - 1) & 1 == 0);
@@ -70,13 +71,13 @@ pub fn handle_signals() {
         let _ = ready.send(());
         signals.iter_mut().flat_map(|signals| signals.forever()).for_each(|signal| interrupt(signal as u8));
     });
-    // Wait until the thread listens. Until then, signals end the program.
+    // Wait until the thread is listening. Until then, signals end the program.
     if listener.is_ok() {
         let _ = wait.recv();
     }
 }
 
-/// Returns a mask of the signals that the parent process set to be ignored, for example with
+/// Returns a mask of the signals that the parent process has set to be ignored, for example with
 /// `nohup`.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
@@ -86,8 +87,8 @@ fn ignored_signals() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Starts to handle Ctrl-C, Ctrl-Break and the other console events. If the window is closed, the
-/// system ends the program anyway, and only earlier saves remain.
+/// Starts handling Ctrl-C, Ctrl-Break and the other console events. If the window is closed, the
+/// operating system ends the program anyway, and only earlier saves remain.
 #[cfg(not(unix))]
 pub fn handle_signals() {
     let _ = ctrlc::set_handler(|| interrupt(2));
@@ -108,7 +109,7 @@ pub fn saving() {
     *locked(&PHASE) = Phase::Saving(false);
 }
 
-/// Runs a render with a progress bar on a terminal. Ctrl-C cancels it.
+/// Runs a render and shows a progress bar if the output is a terminal. Ctrl-C cancels the render.
 pub fn watch<T>(
     control: &Arc<Control>,
     quiet: bool,
@@ -120,16 +121,16 @@ pub fn watch<T>(
     result
 }
 
-/// Runs work with a progress bar on a terminal. Unlike in [`watch`], signals end the program at
-/// once, because nothing needs to be saved.
+/// Runs work and shows a progress bar if the output is a terminal. Unlike in [`watch`], signals end
+/// the program at once because nothing needs to be saved.
 pub fn with_progress<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
     if !quiet && std::io::stderr().is_terminal() { with_bar(control, work) } else { work() }
 }
 
-/// Child process that is ended together with this program.
+/// Child process that ends together with this program.
 static CHILD: Mutex<Option<Child>> = Mutex::new(None);
 
-/// Runs a command and returns its output. A signal that ends this program ends the command too.
+/// Runs a command and returns its output. A signal that ends this program also ends the command.
 pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     *locked(&CHILD) = Some(child);
@@ -147,7 +148,7 @@ pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
 /// Ends the program and its child process.
 fn end(code: u8) {
     if let Some(child) = locked(&CHILD).as_mut() {
-        // Ignore errors: the child may have ended already.
+        // Ignore errors because the child may have ended already.
         let _ = child.kill();
     }
     crate::terminal::end(code)
@@ -161,7 +162,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             let start = Instant::now();
-            // Waiting ends when the sender is dropped at the end of the render.
+            // The wait ends when the sender is dropped at the end of the render.
             while wait.recv_timeout(Duration::from_millis(100)) == Err(mpsc::RecvTimeoutError::Timeout) {
                 if bar.is_hidden() && start.elapsed() > Duration::from_millis(500) {
                     bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -181,7 +182,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Processes items one after the other, with a progress line on a terminal.
+/// Processes items one after another and shows a progress line if the output is a terminal.
 pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");
@@ -204,7 +205,7 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
     done
 }
 
-/// Runs `work`, and shows its progress from 0 to 1 on a terminal if it takes long.
+/// Runs `work`. If it takes long and the output is a terminal, shows its progress from 0 to 1.
 pub fn show_progress<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}");

@@ -1,4 +1,5 @@
-//! `durer render`: renders one picture, an animation, or a picture again and again with `--watch`.
+//! Implements `durer render`, which renders one picture, an animation, or a picture again and again
+//! with `--watch`.
 
 use crate::failure::{Failure, invalid_input};
 use crate::frames::FramesArgs;
@@ -64,7 +65,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
             frames::run(&mut command.render, frames, moves)
         }
         (None, true) => {
-            // Each change starts a new picture, so save no unfinished work.
+            // Each change starts a new picture, so unfinished work is not saved.
             command.render.work.no_checkpoint = true;
             watching::run(&command.render)
         }

@@ -15,7 +15,7 @@ use durer::world::{Material, World};
 use std::io::IsTerminal;
 use std::ops::Range;
 
-/// Prints diagnostics to standard error: all of them, or only errors.
+/// Prints either all diagnostics or only errors to standard error.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let selected: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
@@ -25,12 +25,12 @@ pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     }
 }
 
-/// Formats a count with its noun.
+/// Formats a count together with its noun.
 pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Returns whether to print colours to a stream: only if it is a terminal.
+/// Returns true if colours should be printed to a stream, which is the case only for a terminal.
 pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
     if stream.is_terminal() { ColorChoice::Auto } else { ColorChoice::Never }
 }
@@ -43,18 +43,18 @@ pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnosti
     let mut shown = SimpleFiles::new();
     for file in 0.. {
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
-        // Leave out the text of files without a diagnostic.
+        // Leave out the text of files that have no diagnostic.
         let used = diagnostics.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
     for diagnostic in diagnostics {
-        // Ignore errors: a closed stream cannot show a message.
+        // Ignore errors because a closed stream cannot show a message.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
         let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
     }
 }
 
-/// Prints a note on one line.
+/// Prints a note on a single line.
 pub fn note(diagnostic: &Diagnostic) {
     print_error_line(&format!("note: {}", diagnostic.message));
 }
@@ -98,7 +98,7 @@ fn cause(world: &World) -> Option<String> {
     is_long.then(|| "the normal of a plane is longer than 1, so its highlight overflows".into())
 }
 
-/// Returns the failure for an unreadable scene file.
+/// Returns the failure for a scene file that cannot be read.
 pub fn unreadable(error: SourceError) -> Failure {
     Failure::Input(Some(error.to_string()))
 }
@@ -107,8 +107,8 @@ fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
     diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|r| r.0))
 }
 
-/// Returns a file's bytes as text of the same length, so that offsets stay valid. Control
-/// characters are replaced, because they could control the terminal.
+/// Returns a file's bytes as text of the same length, so that offsets remain valid. Control
+/// characters are replaced because they could control the terminal.
 fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
@@ -122,8 +122,8 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// View of the files of a diagnostic that shows only the text around its span, because lines can be
-/// megabytes long.
+/// View of the files of a diagnostic that shows only the text around its span. This is necessary
+/// because lines can be megabytes long.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
@@ -165,8 +165,8 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-/// Returns true if a second span can be shown with the first. In a long line, only the text around
-/// the first span is shown.
+/// Returns true if a second span can be shown together with the first. In a long line, only the
+/// text around the first span is shown.
 fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
     let Some(first) = first.filter(|first| first.file == second.file) else { return true };
     let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;

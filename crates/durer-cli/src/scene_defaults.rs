@@ -1,4 +1,4 @@
-//! Options for models: files with objects but without a complete scene.
+//! Options for models, which are files that contain objects but no complete scene.
 
 use clap::{Args, ValueEnum};
 use durer::options::doc;
@@ -32,7 +32,7 @@ pub struct SceneDefaultsArgs {
     pub at: Option<f32>,
 }
 
-/// Axis of a model that points up, given with `--up`.
+/// The axis of a model that points up, as given by `--up`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Up {
     X,
@@ -40,7 +40,7 @@ pub enum Up {
     Z,
 }
 
-/// View of a model, given with `--view`.
+/// The view of a model, as given by `--view`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum ViewDirection {
     /// From the front, slightly from the right and above, in perspective
@@ -55,7 +55,7 @@ pub enum ViewDirection {
     Iso,
 }
 
-/// Lights that are added to a model, given with `--studio`.
+/// Lights that are added to a model, as given by `--studio`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum StudioLight {
     /// No lights and no ground

@@ -1,4 +1,4 @@
-//! `--stats`: prints times and ray counts of a render.
+//! Implements `--stats`, which prints the times and ray counts of a render.
 
 use crate::failure::{Failure, from_render_error};
 use crate::terminal::print_error_line;
@@ -21,7 +21,7 @@ impl StageTimer {
         StageTimer { last: Instant::now(), done: Vec::new() }
     }
 
-    /// Ends the current stage, which gets this name, and starts the next.
+    /// Ends the current stage, gives it this name, and starts the next stage.
     pub fn end_stage(&mut self, name: &'static str) {
         self.done.push((name, self.last.elapsed()));
         self.last = Instant::now();

@@ -4,19 +4,20 @@ use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Exit code of failures other than invalid input, including failures to write to standard output.
+/// Exit code of all failures except invalid input. It includes failures to write to standard
+/// output.
 pub const OTHER_FAILURE: u8 = 1;
 
 /// True if the program was started without a standard output.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Function that ends the program with an exit code.
+/// Type of function that ends the program with an exit code.
 pub type ExitFn = fn(u8) -> !;
 
 /// Function that ends the program early. See [`set_end`].
 static END: OnceLock<ExitFn> = OnceLock::new();
 
-/// Sets the function that ends the program; only the first call counts.
+/// Sets the function that ends the program. Only the first call has an effect.
 pub fn set_end(end: ExitFn) {
     let _ = END.set(end);
 }
@@ -25,7 +26,7 @@ pub fn set_end(end: ExitFn) {
 ///
 /// # Panics
 ///
-/// If [`set_end`] was not called.
+/// Panics if [`set_end`] was not called.
 pub fn end(code: u8) -> ! {
     match END.get() {
         Some(end) => end(code),
@@ -44,8 +45,8 @@ pub fn has_standard_output() -> bool {
     !CLOSED.load(Relaxed)
 }
 
-/// Prints a line on standard output. A closed pipe is not an error, because the reader has what it
-/// needs.
+/// Prints a line on standard output. A closed pipe is not an error because the reader already has
+/// all that it needs.
 pub fn print_line(line: &str) {
     let written = match has_standard_output() {
         true => writeln!(std::io::stdout(), "{line}"),
@@ -60,7 +61,7 @@ pub fn print_line(line: &str) {
     }
 }
 
-/// Prints a line on standard error. Errors are ignored, because there is nowhere to report them.
+/// Prints a line on standard error. Errors are ignored because there is nowhere to report them.
 pub fn print_error_line(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

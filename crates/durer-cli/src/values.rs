@@ -1,17 +1,17 @@
-//! Parsers for the values of options.
+//! Parsers for option values.
 
-/// Parses a minimum throughput: a number that is 0 or more.
+/// Parses a minimum throughput, which is a number of at least 0.
 pub fn weight(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "expected a number, 0 or more".into())
 }
 
-/// Parses a pixel position: column and row.
+/// Parses a pixel position, which consists of a column and a row.
 pub fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
     numbers.ok_or_else(|| "expected a column and a row, counted from the upper left corner, for example 200,150".into())
 }
 
-/// Parses a tolerance: a number that is 0 or more, or a fraction such as 2/255.
+/// Parses a tolerance, which is a number of at least 0 or a fraction such as 2/255.
 pub fn tolerance(text: &str) -> Result<f32, String> {
     let value: Option<f32> = match text.split_once('/') {
         Some((n, of)) => n.trim().parse().ok().zip(of.trim().parse::<f32>().ok()).map(|(n, of): (f32, f32)| n / of),

@@ -1,4 +1,4 @@
-//! `durer verify`: checks that renders are deterministic.
+//! Implements `durer verify`, which checks that renders are deterministic.
 
 use crate::failure::Failure;
 use crate::file_registry::FileRegistry;
@@ -43,12 +43,13 @@ pub struct VerifyArgs {
     pub quiet: bool,
 }
 
-/// Acceleration structures to render with.
+/// Acceleration structures that the scene is rendered with.
 const STRUCTURES: [(&str, AccelKind); 3] =
     [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
 
 /// Returns the available SIMD levels, with their names for `DURER_SIMD`. A process chooses its
-/// level only once, so if the variable is set, as in child processes, there is only that level.
+/// level only once. If the variable is set, as it is in child processes, only that level is
+/// available.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
         Some(_) => vec![SimdLevel::chosen().name()],
@@ -68,7 +69,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         options.accel = accel;
         let (width, height) = args.job.options.requested_size().unwrap_or(SIZE);
         options.scene_defaults.aspect = Some(width as f32 / height as f32);
-        // Print diagnostics only for the first acceleration structure.
+        // Diagnostics are printed only for the first acceleration structure.
         let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut FileRegistry::default())?;
         let mut job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
         (job.width, job.height) = (width, height);
@@ -125,10 +126,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the hash that a child process computes at another SIMD level, with fewer trials.
+/// Returns the hash that a child process computes at another SIMD level with fewer trials.
 fn hash_at(level: &str) -> anyhow::Result<String> {
     let mut arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
-    // An option can be given only once.
+    // An option may be given only once.
     while let Some(at) = arguments.iter().position(|argument| argument == "--trials") {
         arguments.drain(at..(at + 2).min(arguments.len()));
     }

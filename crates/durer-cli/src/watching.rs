@@ -1,4 +1,4 @@
-//! `--watch`: renders again whenever a file of the scene is saved.
+//! Implements `--watch`, which renders again whenever a file of the scene is saved.
 
 use crate::failure::Failure;
 use crate::options::RenderArgs;
@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// Interval between checks of the files; short, because the user is waiting for the picture.
+/// Interval between checks of the files. It is short because the user is waiting for the picture.
 const CHECK_INTERVAL: Duration = Duration::from_millis(10);
 /// Time for which files must stay unchanged, because some programs save in several steps.
 const SETTLE_TIME: Duration = Duration::from_millis(50);
@@ -24,7 +24,8 @@ fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
     files.iter().map(|path| stamp_of(path)).collect()
 }
 
-/// Renders until Ctrl-C. If the scene has errors, prints them and waits until a file changes.
+/// Renders again and again until Ctrl-C. If the scene has errors, prints them and waits until a
+/// file changes.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let named = [&args.reading.scene_defaults.view_file, &args.reading.scene_defaults.environment];
     let always: Vec<PathBuf> =
@@ -39,13 +40,13 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         match result {
             Ok(()) => {}
             Err(Failure::Interrupted(_)) if stale => {}
-            // Only errors in files can be fixed by saving a file.
+            // Saving a file can fix only errors in files.
             Err(failure @ Failure::Input(_)) => {
                 failure.report();
             }
             Err(failure) => return Err(failure),
         }
-        // If the scene cannot be read, keep watching the same files.
+        // If the scene cannot be read, the same files are still watched.
         let found = watched.files.into_inner().unwrap_or_default();
         let before = match found.is_empty() {
             true => before,
@@ -76,7 +77,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// Waits until the files stay unchanged for [`SETTLE_TIME`], but at most 40 times as long.
+/// Waits until the files have stayed unchanged for [`SETTLE_TIME`], but at most 40 times as long.
 fn wait_until_unchanged(files: &[PathBuf]) {
     let mut last = stamp(files);
     for _ in 0..40 {
@@ -89,7 +90,7 @@ fn wait_until_unchanged(files: &[PathBuf]) {
     }
 }
 
-/// Runs `work`, and cancels it if a file is saved.
+/// Runs `work` and cancels it if a file is saved.
 fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &WatchState, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {

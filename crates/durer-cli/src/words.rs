@@ -1,4 +1,4 @@
-//! `durer words`: prints the language reference.
+//! Implements `durer words`, which prints the language reference.
 
 use crate::failure::{Failure, invalid_input};
 use crate::terminal::print_line;

@@ -1,20 +1,20 @@
-//! Runs every command in the README and the book at a small size.
+//! Runs every command in the README and the book with a small picture size.
 //!
-//! docs/lecture.md has its own test.
+//! docs/lecture.md has a test of its own.
 
 mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Option values that are replaced to keep the test short.
+/// Option values that are replaced in order to keep the test short.
 const SMALLER: [(&str, &str); 3] = [("--size", "40x30"), ("--samples", "4"), ("--pixel", "20,15")];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Returns the README and every page of the book.
+/// Returns the README and all pages of the book.
 fn pages() -> Vec<String> {
     let mut pages = vec!["README.md".to_string(), "crates/durer-cli/README.md".to_string()];
     for folder in ["docs", "docs/language"] {
@@ -26,13 +26,13 @@ fn pages() -> Vec<String> {
     pages
 }
 
-/// Returns the commands of a page in order: lines of code that begin with `cargo durer` or `durer`.
-/// Commands can use the files of earlier ones.
+/// Returns the commands of a page in order. Commands are lines of code that begin with `cargo
+/// durer` or `durer`. A command may use files that earlier commands wrote.
 fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
     let commands = lines.filter_map(|line| line.strip_prefix("cargo ").unwrap_or(line).strip_prefix("durer "));
-    // A server runs until it is stopped; `durer-live` has its own tests.
+    // A server runs until it is stopped, and `durer-live` has its own tests.
     commands
         .filter(|command| !command.starts_with("live ") && *command != "lesson monday.md")
         .map(str::to_string)
@@ -52,7 +52,7 @@ const STAND_INS: [(&str, &str); 4] = [
     ("office.vf", "rvu -vtv -vp 0 -5 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45\n"),
 ];
 
-/// Changes a command so that it renders few pixels.
+/// Changes a command so that it renders only a few pixels.
 fn smaller(command: &str) -> String {
     let mut words: Vec<&str> = command.split_whitespace().collect();
     for i in 1..words.len() {
@@ -69,7 +69,7 @@ fn smaller(command: &str) -> String {
 #[cfg(unix)]
 fn every_command_of_the_book_runs() {
     let durer = |folder: &Path, line: &str| {
-        // Expand file name patterns, as a shell does.
+        // Expand file name patterns in the same way as a shell.
         let line = format!("{} {line}", env!("CARGO_BIN_EXE_durer"));
         Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
     };

@@ -1,10 +1,10 @@
-//! Cameras on the command line: aspect ratios, alpha, and invalid values.
+//! Tests cameras on the command line: aspect ratios, alpha, and invalid values.
 
 mod common;
 
 use common::{SCENE, TestFolder};
 
-/// Returns the shared test scene with another camera.
+/// Returns the shared test scene with a different camera.
 fn seen_by(camera: &str) -> String {
     let (_, rest) = SCENE.split_once('\n').unwrap();
     format!("# ours\n{camera}\n{rest}")
@@ -12,8 +12,8 @@ fn seen_by(camera: &str) -> String {
 
 const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
-/// Returns the bits per pixel and the RGBA pixels of an uncompressed Targa picture, bottom row
-/// first.
+/// Returns the bits per pixel and the RGBA pixels of an uncompressed Targa picture, with the bottom
+/// row first.
 fn targa(folder: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
     let bytes = folder.bytes(name);
     let (head, rest) = bytes.split_at(18);
@@ -44,15 +44,15 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         let at = |x: usize, y: usize| pixels[y * 40 + x];
         assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
         assert_eq!([at(20, 20)[3], at(20, 1)[3], at(38, 20)[3]], [255; 3], "{way}");
-        // With several samples per pixel, the rim is antialiased.
+        // With several samples per pixel, the rim of the image circle is antialiased.
         let partly = pixels.iter().filter(|p| ![0, 255].contains(&p[3])).count();
         assert_eq!(partly > 20, way.contains("jitter") || way == "--samples 16", "{way}: {partly}");
         // Area of the disc in pixels.
         let area: f64 = pixels.iter().map(|p| f64::from(p[3]) / 255.0).sum();
         assert!((area / (400.0 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{way}: {area}");
     }
-    // Formats without alpha show black outside the image circle. A fully covered picture has no
-    // alpha.
+    // Formats without alpha show black outside the image circle. A picture that is fully covered
+    // has no alpha channel.
     folder.expect_exit(0, "render eye.txt --size 40x40 -o eye.ppm");
     assert_eq!(folder.image8("eye.ppm").pixels[0], [0; 3]);
     folder.expect_exit(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
@@ -78,7 +78,8 @@ fn pictures_have_the_aspect_ratio_of_their_cameras() {
         let (width, height) = size;
         assert!(output.contains(&format!("picture    {width}x{height} by default")), "{camera}: {output}");
     }
-    // With another aspect ratio the image is not distorted, and a warning reports the empty pixels.
+    // With a different aspect ratio, the image is not distorted, and a warning reports the empty
+    // pixels.
     folder.write("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
     let output = folder.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
     assert!(output.contains("20 rows of 40x40 stay empty") && output.contains("--size 56x28"), "{output}");
@@ -144,7 +145,7 @@ fn invalid_cameras_are_refused() {
     assert_eq!(output.matches("warning").count(), 1, "{output}");
     folder.write("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
     folder.expect_failure(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
-    // Converted scenes give the same picture.
+    // Converted scenes produce the same picture.
     folder.expect_exit(0, "convert ours.txt -o again.txt");
     folder.expect_exit(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
     folder.expect_exit(0, "render again.txt -o b.pfm --size 20x20 --samples 2");

@@ -1,5 +1,5 @@
-//! Tests `durer check` cause by cause, with a small change of a valid scene that triggers a
-//! finding, and a similar change that does not.
+//! Tests `durer check` cause by cause. Each test uses a small change of a valid scene that triggers
+//! a finding and a similar change that does not.
 
 mod common;
 
@@ -13,13 +13,13 @@ const CAUSES: &str = include_str!("causes.txt");
 /// Expected result of `durer check` for a case in causes.txt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// No warning: a base scene or a near miss.
+    /// There is no warning because this is a base scene or a near miss.
     Sound,
     /// The first finding has the expected code.
     Broken,
 }
 
-/// A scene of causes.txt with its options and the expected result of `durer check`.
+/// A scene of causes.txt, with its options and the expected result of `durer check`.
 struct Case {
     line: String,
     kind: Kind,
@@ -83,7 +83,7 @@ fn put_files(folder: &TestFolder) {
     let halves: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c}\nf {a} {c} {d}\n")).collect();
     folder.write("quads.obj", format!("{corners}{quads}"));
     folder.write("box.obj", format!("{corners}{halves}"));
-    // The cube without its top face.
+    // This is the cube without its top face.
     let cup: String =
         halves.lines().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, face)| format!("{face}\n")).collect();
     folder.write("cup.obj", format!("{corners}{cup}"));
@@ -105,7 +105,7 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     put_files(&folder);
     let cases = cases();
     let (mut wrong, mut text) = (Vec::new(), BTreeSet::new());
-    // Check scenes with the same options in one run.
+    // Scenes with the same options are checked in one run.
     let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (number, case) in cases.iter().enumerate() {
         folder.write(&format!("{number}.txt"), &case.text);
@@ -135,7 +135,7 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     assert!(cases.len() > 100 && text.len() > 50, "{} cases of {} causes", cases.len(), text.len());
 }
 
-/// Checks that every code has a scene, here or in its own file.
+/// Checks that every code has a scene, either here or in a file of its own.
 #[test]
 fn every_cause_has_a_scene() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");

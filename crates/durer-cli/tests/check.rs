@@ -1,4 +1,4 @@
-//! Tests `durer check` on scenes that were broken by hand.
+//! Tests `durer check` with scenes that were broken by hand.
 
 mod common;
 
@@ -7,8 +7,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder and the names of the broken scenes. A name begins with the code of the
-/// expected finding, for example `camera-away.backwards.txt`.
+/// Returns the folder and the names of the broken scenes. The name of each scene begins with the
+/// code of the expected finding, for example `camera-away.backwards.txt`.
 fn broken() -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -56,7 +56,7 @@ fn cause_is_among_the_first_two() {
             wrong.push(format!("{name}: {codes:?}"));
         }
         for finding in scene["findings"].as_array().unwrap() {
-            // Each span must be within an existing file.
+            // Each span must lie within an existing file.
             let span = &finding["place"];
             if !span.is_null() {
                 let bytes = folder.bytes(span["file"].as_str().unwrap());
@@ -113,7 +113,7 @@ fn mechanical_faults_are_fixed() {
         assert_eq!(folder.bytes(name), before, "{name} itself was changed");
         let scene = &json(&output)["scenes"][0];
         let mended = scene["mended"].as_array().unwrap();
-        // Repaired findings are not reported in a second run either.
+        // A second run does not report the repaired findings either.
         let again = folder.run("check mended.txt --json");
         assert_eq!(again.code, output.code, "{name}\n{}", output.out);
         let found = codes(&json(&again)["scenes"][0]);
@@ -190,7 +190,7 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
 ",
     );
     folder.expect_exit(0, "check back.txt");
-    // The course's programs do not shade back faces, so here the triangle is wrong.
+    // The course's programs do not shade back faces, so this triangle is an error here.
     let output = folder.expect_exit(1, "check back.txt --dialect f04");
     assert!(output.out.contains("[seen-from-behind]") && output.out.contains("its back stays black"), "{}", output.out);
     folder.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
@@ -231,7 +231,7 @@ fn faulty_picture_is_reported_after_the_render() {
 
     let course = |scene: &str| folder.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
-    // Students judge brightness themselves, so report only pictures of a single colour.
+    // Students judge the brightness themselves, so only pictures of a single colour are reported.
     assert!(!course("color-range.light.txt").contains("the picture"));
     assert!(course("camera-away.point.txt").contains("[camera-away]"));
 }

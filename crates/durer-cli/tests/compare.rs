@@ -54,7 +54,7 @@ fn exit_codes_and_words() {
     assert!(folder.expect_exit(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
     folder.expect_exit(0, "compare a.png near.ppm --tolerance 0.008");
     folder.expect_exit(0, "compare a.png near.ppm --allow 100");
-    // A floating point picture equals its 8-bit version.
+    // A floating-point picture is equal to its 8-bit version.
     folder.expect_exit(0, "compare a.png a.exr");
     folder.expect_exit(1, "compare a.png a.exr --transfer linear");
     let light = json(&folder.expect_exit(0, "compare a.exr a.exr --json").out);
@@ -73,7 +73,7 @@ fn regions_name_the_hit_objects() {
         assert!(!regions.is_empty());
         for region in regions {
             let (there, worst) = (&region["there"], &region["worst"]);
-            // The plane has a shadow.
+            // The plane is partly in shadow.
             assert!(there["hit"]["object"].as_str().unwrap().starts_with("Plane "), "{there}");
             assert_eq!(there["hit"]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
             let command = there["command"].as_str().unwrap().strip_prefix("durer ").unwrap();
@@ -208,7 +208,7 @@ fn heat_map_is_black_where_nothing_differs() {
     assert!(heat.pixels[60 * 50 - 1][0] > 200);
 }
 
-/// Finds mistakes of students in pictures of the course.
+/// Finds the mistakes of students in pictures of the course.
 #[test]
 fn mistakes_in_real_pictures_are_named() {
     let Some(course) = corpus() else { return };
@@ -217,7 +217,7 @@ fn mistakes_in_real_pictures_are_named() {
         let path = course.join("reference").join(name);
         let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
         let (width, height) = (a.width, a.height);
-        // Change one in twenty pixels, without a pattern.
+        // Change one in twenty pixels, without any pattern.
         let speckle = |x: u32, y: u32| {
             let mixed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13);
             ((mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35) >> 16).is_multiple_of(20)
@@ -253,9 +253,9 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         folder.expect_exit(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
     let words = |name: &str| folder.expect_exit(1, &format!("compare right.png {name}.png")).out;
-    // A fine pattern changes everywhere, so pixels alone give no diagnosis.
+    // A fine pattern changes pixels everywhere, so the pixels alone are not enough for a diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
-    // Brightness has many possible causes, so pixels alone give no diagnosis.
+    // The brightness can have many causes, so the pixels alone are not enough for a diagnosis.
     assert!(
         words("bare").contains("and the rest is equal: the pictures alone do not show the cause"),
         "{}",
@@ -266,7 +266,7 @@ fn border_pixels_and_missing_shadows_are_recognised() {
     assert!(tried("border").contains("on the picture's border"), "{}", tried("border"));
 }
 
-/// Script that clicks through the page and records what it shows.
+/// Script that clicks through the page and records what the page shows.
 const CLICKS: &str = r##"
 const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
 const choose = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
@@ -365,8 +365,8 @@ Group {
 }
 ";
 
-/// Differences within the noise of path-traced pictures are recognised, and errors from trying
-/// other dialects are not printed.
+/// Differences within the noise of path-traced pictures are recognised. Errors that occur while
+/// other dialects are tried are not printed.
 #[test]
 fn pictures_of_paths_are_judged_against_their_noise() {
     let folder = TestFolder::new();
@@ -392,8 +392,8 @@ fn pictures_of_paths_are_judged_against_their_noise() {
         let text = text(name);
         assert_eq!(text["named"][0]["mistakes"][0]["name"], "path-depth", "{text:#}");
     }
-    // The reference of another scene is reported as such, because more of its pixels differ than
-    // noise explains.
+    // If the reference belongs to another scene, this is reported because more pixels differ than
+    // noise can explain.
     folder.write(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),

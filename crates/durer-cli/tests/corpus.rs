@@ -1,5 +1,5 @@
-//! Tests with external files: the command lines of the official pictures, and the conversion of
-//! scenes and models.
+//! Tests with external files. They cover the command lines of the official pictures, and the
+//! conversion of scenes and models.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn year_of_every_official_command_is_guessed() {
     assert!(rows.len() > 150, "{} rows", rows.len());
     let mut wrong = Vec::new();
     for (dialect, arguments) in rows {
-        // Write the pictures to the test's folder, four pixels wide.
+        // The pictures are written to the test's folder and are four pixels wide.
         let mut words: Vec<String> = arguments.split_whitespace().map(str::to_string).collect();
         for i in 0..words.len() {
             if [".tga", ".bmp", ".png"].iter().any(|ending| words[i].ends_with(ending)) {
@@ -41,7 +41,7 @@ fn year_of_every_official_command_is_guessed() {
                 (words[i + 1], words[i + 2]) = ("4".into(), "4".into());
             }
         }
-        // The guessed dialect gives the same pictures as the named dialect.
+        // The guessed dialect produces the same pictures as the named dialect.
         let pictures = |named: &[&str]| {
             let mut command = place.command("course");
             let folder = course.join("scenes").join(dialect);
@@ -92,7 +92,7 @@ fn converted_scenes_render_the_same_picture() {
         let folder = course.join("scenes").join(dialect);
         let mut scenes: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
         scenes.retain(|path| {
-            // Scenes of splines use another file format.
+            // Scenes that contain splines use another file format.
             let name = path.file_name().unwrap().to_string_lossy();
             name.ends_with(".txt") && !name.starts_with("spline")
         });

@@ -18,7 +18,7 @@ fn every_option_of_2004() {
          -shade_back -weight 0.01 -gui -tessellation 100 50 -gouraud -stats -grid 10 10 10 -transparent_shadows \
          -jittered_samples 4 -gaussian_filter 0.4 -render_samples s.tga 3 -render_filter f.tga 4",
     );
-    // The keywords identify the dialect.
+    // The keywords identify the dialect of the scene.
     assert!(!output.err.contains("read as"), "{}", output.err);
     assert!(output.out.starts_with("objects 2, rays "), "{}", output.out);
     for (name, size) in [("o", (20, 10)), ("d", (20, 10)), ("n", (20, 10)), ("s", (60, 30)), ("f", (81, 41))] {
@@ -64,8 +64,8 @@ fn grid_picture_replaces_the_colour_picture() {
     folder.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
     folder.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
     let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| folder.bytes(name));
-    // Without a number of cells the program chooses one. Here it is a single cell, as in the first
-    // run.
+    // If no number of cells is given, the program chooses one. Here it chooses a single cell, as in
+    // the first run.
     assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
     assert!(folder.bytes("d.tga") != pictures[0]);
 }
@@ -73,13 +73,13 @@ fn grid_picture_replaces_the_colour_picture() {
 #[test]
 fn values_are_truncated_without_a_curve() {
     let folder = TestFolder::new();
-    // In the corners the sky is visible (0.2 0.1 0.5), and the depth is black.
+    // In the corners, the sky is visible (0.2 0.1 0.5) and the depth is black.
     folder.expect_exit(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
     let image = folder.image8("o.tga");
     assert_eq!((image.width, image.height, image.pixels[0]), (100, 100, [51, 25, 127]));
     assert_eq!(folder.image8("d.tga").pixels[0], [0, 0, 0]);
     assert_eq!(folder.image8("n.tga").pixels[0], [0, 0, 0]);
-    // The floor's normal is straight up.
+    // The normal of the floor points straight up.
     assert_eq!(folder.image8("n.tga").pixels[9999], [0, 255, 0]);
 }
 
@@ -149,7 +149,7 @@ fn f12a4_writes_tga_unless_the_name_ends_in_bmp() {
         assert_eq!(is_bmp, name == "o.bmp", "{name}");
         assert_eq!(durer::image::read8(&folder.bytes(name), "o.tga").unwrap().width, 4);
     }
-    // In other dialects, names have their usual meaning.
+    // In other dialects, the names have their usual meaning.
     folder.expect_exit(0, "course -input plain.txt -size 4 4 -output p.png");
     assert!(folder.bytes("p.png").starts_with(b"\x89PNG"));
 }
@@ -183,7 +183,7 @@ Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 
         let mut command = std::process::Command::new(folder.path(name));
         let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(folder.path("")).output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr);
-        // If the program is known, the dialect is not guessed.
+        // If the official program is known, the dialect is not guessed.
         assert!(output.status.success() && err.is_empty(), "{name}: {err}");
         assert_eq!(folder.image8("o.bmp").width, side, "{name}");
     }
@@ -202,7 +202,7 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
             let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
             let output = place.run(&arguments);
             println!("{mesh} {dialect}: {:?}", output.code);
-            // The programs of 2004 and 2012 search the current folder; all programs search the
+            // The programs of 2004 and 2012 search the current folder. All programs search the
             // scene's folder.
             assert!(
                 output.code == Some(0) || (dialect == "f16" && folder.is_empty()),
@@ -255,7 +255,7 @@ fn year_whose_picture_has_nan_samples_is_not_guessed() {
     let light = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
     let sun = "DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }";
     let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
-    // In 2016, both lights cause a division by zero.
+    // In 2016, both lights would cause a division by zero.
     folder.write("none.txt", shiny.replace(sun, &light("")));
     folder.write("zero.txt", shiny.replace(sun, &light("falloff 0")));
     for (scene, options, year) in [
@@ -291,7 +291,7 @@ fn output_name_alone_does_not_decide_the_year() {
     let folder = TestFolder::new();
     let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
-    // In 2016, this light would cause a division by zero. But another keyword in the scene
+    // In 2016, this light would cause a division by zero. However, another keyword in the scene
     // identifies the year.
     folder.write("bulb.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     let picture = |ending: &str| {

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const SMALL: &str = "--size 40x30 --quiet";
 
-/// Sums the terms of a node in single precision, in order.
+/// Sums the terms of a node in order, in single precision.
 fn sum(node: &Value) -> [f32; 3] {
     let color = |name: &str| -> [f32; 3] { std::array::from_fn(|i| node[name][i].as_f64().unwrap() as f32) };
     let terms = node["terms"].as_array().unwrap();
@@ -47,7 +47,7 @@ fn course_samplers_are_explained_with_neighbouring_pixels() {
     let text = output("--sampler jittered --samples 4 --filter gaussian");
     assert!(text.contains("weighted mean of 36 samples, including samples of neighbouring pixels; "), "{text}");
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
-    // For surfaces that are too far away, only their number is printed.
+    // For surfaces that are too far away, only the number is printed.
     let text = output("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
     assert!(text.contains(" more samples have no weight in this pixel"), "{text}");
     let text = output("--jitter --blur");
@@ -88,7 +88,7 @@ fn text_names_objects_by_file_position() {
     }
 }
 
-/// Prints the vectors of highlights and the weight of the colour in the glass of 2012.
+/// Prints the vectors of highlights, and the weight of the colour in the glass of 2012.
 #[test]
 fn formulas_show_all_factors() {
     let folder = TestFolder::new();
@@ -108,7 +108,8 @@ fn formulas_show_all_factors() {
     assert!(String::from_utf8(folder.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
 }
 
-/// Omits small and deep terms and says so. Prints no minus before 0, and at most four digits.
+/// Omits small and deep terms and says that they are omitted. Prints no minus sign before 0, and
+/// prints at most four digits.
 #[test]
 fn text_is_readable() {
     let folder = TestFolder::new();
@@ -170,13 +171,13 @@ fn page_is_self_contained() {
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
 
-/// Collects the names of fields and kinds of nodes in a JSON value.
+/// Collects the field names and node kinds in a JSON value.
 fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
     match json {
         Value::Array(values) => values.iter().for_each(|value| words(value, found)),
         Value::Object(fields) => {
             for (name, value) in fields {
-                // Objects have numbers as keys.
+                // Some objects have numbers as keys.
                 if name.parse::<u32>().is_err() {
                     found.insert(name.clone());
                 }
@@ -210,7 +211,7 @@ fn every_json_field_is_documented() {
     assert!(missing.is_empty(), "{missing:?}");
 }
 
-/// Script that unfolds the tree, selects another sample, highlights a ray, and turns the view.
+/// Script that unfolds the tree, selects another sample, highlights a ray, and rotates the view.
 const CLICKS: &str = r##"
 const open = () => document.querySelectorAll("#tree details[open]").length;
 see(`terms ${document.querySelectorAll("#tree summary, #tree .leaf").length > 5}`);
@@ -290,7 +291,8 @@ Group {
 }
 ";
 
-/// Terms show where they come from: the equation of a hit, a matrix, a cell, texels, Snell's law.
+/// Terms show where they come from, for example the equation of a hit, a matrix, a cell, texels, or
+/// Snell's law.
 #[test]
 fn numbers_say_where_they_come_from() {
     let folder = TestFolder::new();

@@ -1,5 +1,5 @@
-//! Tests small files and options that describe huge data. The program must compute the size before
-//! it allocates memory, and reject oversized input with an error instead of aborting.
+//! Tests small files and options that describe huge amounts of data. The program must compute the
+//! size before it allocates memory, and reject oversized input with an error instead of aborting.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -7,8 +7,8 @@ mod common;
 use common::{SCENE, TestFolder};
 use std::fmt::Write;
 
-/// Checks that the program rejects a command line with an error, under limits of address space and
-/// time.
+/// Checks that the program rejects a command line with an error while its address space and time
+/// are limited.
 #[track_caller]
 fn refused(folder: &TestFolder, line: &str, words: &str) {
     let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {line}");
@@ -22,7 +22,7 @@ fn render(file: &str) -> String {
     format!("render {file} --size 8x8 --samples 1 -q --restart -o o.png --threads 2 --memory 256M")
 }
 
-/// Returns a Mitsuba scene of 40 elements, each twice as large as the previous one.
+/// Returns a Mitsuba scene with 40 elements, each twice as large as the previous one.
 fn doubled(first: &str, double: impl Fn(usize) -> String, last: &str) -> String {
     let mut scene =
         format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}\n");
@@ -54,7 +54,7 @@ fn doubling_in_mitsuba_scene_is_refused() {
         let two = |i: usize| group(i, &instance(i - 1).repeat(2));
         folder.write(file, doubled(&group(0, inner), two, &instance(40)));
         refused(&folder, &render(file), "error");
-        // Fewer levels, which are within the depth limit.
+        // This scene has fewer levels, which are within the depth limit.
         let shallow = (1..=25).map(two).collect::<String>();
         let scene = format!("<scene version=\"3.0.0\">{}{shallow}{}</scene>", group(0, inner), instance(25));
         folder.write(file, scene);
@@ -70,7 +70,7 @@ fn doubling_in_mitsuba_scene_is_refused() {
         folder.write(file, doubled(first, both, shown));
         refused(&folder, &render(file), "this material is too large: it consists of more than 4096 materials");
     }
-    // Many copies of a material that is just below the size limit.
+    // The scene contains many copies of a material that is just below the size limit.
     let mut copies = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>\n");
     for i in 1..=11 {
         let part = format!(r#"<ref id="b{}"/>"#, i - 1);
@@ -95,8 +95,8 @@ fn doubling_names_in_scene_are_refused() {
     }
 }
 
-/// Returns a glTF file whose nodes share a mesh. If `copies` is above 0, each node has that many
-/// instances.
+/// Returns a glTF file whose nodes share a mesh. If `copies` is greater than 0, each node has that
+/// many instances.
 fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
     // The buffer contains only three vertices and the instance translations.
     let zeros = |count: usize| "A".repeat(count.div_ceil(3) * 4);
@@ -162,7 +162,7 @@ fn rows_that_no_file_holds_count_as_memory() {
     }
 }
 
-/// Returns a JPEG with empty scan data and the given sampling factors of its components.
+/// Returns a JPEG that has empty scan data and components with the given sampling factors.
 fn jpeg(kind: u8, [width, height]: [u16; 2], factors: &[u8]) -> Vec<u8> {
     let mut bytes = vec![0xff, 0xd8];
     let mut segment = |kind: u8, content: &[u8]| {
@@ -198,7 +198,7 @@ fn photographs_take_the_memory_that_their_heads_announce() {
     ] {
         for kind in [0xc0, 0xc1, 0xc2] {
             folder.write("p.jpg", jpeg(kind, size, factors));
-            // The address space is sufficient for the program and for `--memory`, but not for the
+            // The address space is large enough for the program and for `--memory` but not for the
             // decoded picture.
             let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \

@@ -1,4 +1,5 @@
-//! Tests Ctrl-C: the program exits with code 130 without delay, and the work so far is saved.
+//! Tests Ctrl-C. The program must exit with code 130 without delay, and the work so far must be
+//! saved.
 #![cfg(unix)]
 
 mod common;
@@ -7,7 +8,7 @@ use common::TestFolder;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Time limit on a busy machine. An idle machine takes 0.2 s.
+/// Time limit that also holds on a busy machine. On an idle machine, it takes 0.2 s.
 const SOON: Duration = Duration::from_secs(8);
 
 #[test]
@@ -25,7 +26,7 @@ fn rendering_stops_soon_and_leaves_no_empty_files() {
     ] {
         let (output, latency) = folder.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
-        // The work is saved if at least a few blocks of pixels are done.
+        // The work is saved if at least a few blocks of pixels have been rendered.
         let part = folder.path("old.png.part");
         let text = output.err.lines().last().unwrap_or_default();
         assert!(text == "interrupted; nothing was written" || text.contains("old.png.part (--resume"), "{text}");
@@ -48,7 +49,7 @@ fn finished_work_is_saved_on_interrupt() {
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
         "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
         "scene.txt --jitter --size 3500x3500",
-        // The time to save is proportional to the work done.
+        // The time needed for saving is proportional to the work done.
         "scene.txt --size 3000x3000 --samples 64",
     ] {
         folder.write("old.png", "an old picture");
@@ -85,7 +86,7 @@ fn reading_stops_on_interrupt() {
         common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"),
     );
     for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
-        // Late enough that the program has started even on a busy machine.
+        // The signal is late enough that the program has started even on a busy machine.
         let (output, latency) = folder.interrupted(command, Duration::from_millis(250));
         assert!(
             output.code == Some(130) && output.out.is_empty() && latency < SOON,
@@ -107,10 +108,10 @@ fn interrupt_leaves_a_complete_file_or_none() {
         );
         match output.code {
             Some(0) => assert_eq!(folder.image8("p.png").width, 300),
-            // The signal may have arrived after the work was done.
+            // The signal may have arrived after the work was finished.
             Some(130) => assert!(!folder.path("p.png").exists() || folder.image8("p.png").width == 300),
-            // Before the handler is installed, the system ends the program. After the program has
-            // ended, the signal has no effect.
+            // Before the handler is installed, the operating system ends the program. After the
+            // program has ended, the signal has no effect.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }
         assert!(folder.names().iter().all(|name| !name.ends_with(".tmp")));
@@ -188,7 +189,7 @@ fn mesh(side: usize) -> String {
     mesh
 }
 
-/// Returns a PPM file of noise with detectable features.
+/// Returns a PPM file with noise that has detectable features.
 fn noise(side: usize, seed: u32) -> Vec<u8> {
     let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
     let mut state = seed.wrapping_mul(2_654_435_761).max(1);
@@ -252,7 +253,7 @@ fn every_command_ends_soon_after_a_signal() {
         for (signal, code) in [("INT", 130), ("TERM", 143)] {
             let (output, latency) = folder.send_signals(line, Duration::from_millis(400), &[signal]);
             assert_eq!(output.code, Some(code), "{line}: {}", output.err);
-            // An idle machine takes half a second at most.
+            // On an idle machine, it takes at most half a second.
             assert!(latency < Duration::from_secs(3), "{line}: {latency:?}");
             println!("{line}: {latency:?} after {signal}");
         }
@@ -273,7 +274,8 @@ fn verification_leaves_no_process_behind() {
         found.out.trim().parse::<u32>().unwrap_or(0)
     };
     let line = format!("verify {} --trials 3 --size 300x300 --samples 64", folder.path("scene.txt").display());
-    // Stop it while the program renders, and while a child process renders at another SIMD level.
+    // Stop the command while the program renders, and also while a child process renders at another
+    // SIMD level.
     for after in [300, 2000, 6000] {
         let _ = folder.send_signals(&line, Duration::from_millis(after), &["TERM"]);
         std::thread::sleep(Duration::from_millis(200));

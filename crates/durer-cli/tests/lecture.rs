@@ -1,5 +1,5 @@
-//! Tests docs/lecture.md and the topics of the lesson: their references to the source code exist,
-//! and their commands reproduce the pictures.
+//! Tests docs/lecture.md and the topics of the lesson. Their references to the source code must
+//! exist, and their commands must reproduce the pictures.
 
 mod common;
 
@@ -16,7 +16,7 @@ fn guide() -> String {
     std::fs::read_to_string(root().join("docs/lecture.md")).unwrap()
 }
 
-/// Returns the texts between two marks.
+/// Returns the pieces of text between two markers.
 fn between<'t>(text: &'t str, from: &'t str, to: &'t str) -> impl Iterator<Item = &'t str> {
     text.split(from).skip(1).filter_map(move |rest| rest.split_once(to)).map(|parts| parts.0)
 }
@@ -79,7 +79,7 @@ fn commands_reproduce_the_pictures() {
             "{picture} differs from the output of its command; the guide says how to render the pictures again"
         );
     };
-    // Run two commands at a time, because small renders leave threads idle.
+    // Run two commands at a time because small renders leave threads idle.
     std::thread::scope(|scope| {
         for turn in 0..2 {
             let (commands, check) = (&commands, &check);

@@ -1,4 +1,4 @@
-//! Tests `durer lesson`: the folder, and the page in a real browser.
+//! Tests `durer lesson`, both the folder and the page in a real browser.
 
 mod common;
 
@@ -30,7 +30,7 @@ fn lesson_folder_has_page_text_and_pictures() {
     );
     assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
-    // The last picture is the same as that of `render`.
+    // The last picture is the same as the one that `render` writes.
     folder.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
     assert_eq!(folder.bytes(&format!("out/{last}")), folder.bytes("p.png"));
@@ -47,7 +47,8 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     folder.write("out/notes.txt", "mine");
     folder.expect_exit(0, &format!("lesson scene.txt -o out -q {SMALL}"));
     let first = names(&folder.path("out"));
-    // Another scene has other steps: stale files are removed, and other files are kept.
+    // Another scene has different steps. Files that are no longer needed are removed, and other
+    // files are kept.
     folder.write("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
     folder.expect_exit(0, &format!("lesson dull.txt -o out -q {SMALL}"));
     folder.expect_exit(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
@@ -57,7 +58,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     assert_ne!(first, fresh);
     assert_eq!(names(&folder.path("out")), fresh);
     assert_eq!(folder.bytes("out/notes.txt"), b"mine");
-    // If another file has the name of a lesson's file, nothing is written.
+    // If an unrelated file has the same name as a file of the lesson, nothing is written.
     std::fs::create_dir(folder.path("site")).unwrap();
     folder.write("site/index.html", "my own page");
     let output = folder.expect_exit(2, &format!("lesson scene.txt -o site -q {SMALL}"));
@@ -120,8 +121,8 @@ setTimeout(() => {
 #[test]
 fn page_works_in_a_browser_without_network() {
     let folder = TestFolder::new();
-    // If this name were not escaped, it would end the script, or link to a file that would be
-    // removed.
+    // If this name were not escaped, it would end the script, or it would link to a file that would
+    // be removed.
     let scene = "<b>](a).txt";
     folder.write(scene, common::SCENE);
     folder.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));

@@ -4,7 +4,7 @@ mod common;
 
 use common::TestFolder;
 
-/// A diffuse floor and an emissive ball under a light with measured intensities.
+/// A diffuse floor and an emissive ball below a light with measured intensities.
 const LIT: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 }
 Background { color 0 0 0 }
 Lights { PhotometricLight { position 0 2 0 file lamp.ies } }
@@ -14,7 +14,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere {
   MaterialIndex 2 Sphere { center -1 0.3 0.5 radius 0.3 } }
 ";
 
-/// An IES profile: 1000 candela straight down, falling off with the cosine.
+/// An IES profile with 1000 candela straight down, which falls off with the cosine.
 const LIGHT: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
 
 fn lit() -> TestFolder {
@@ -28,15 +28,15 @@ fn lit() -> TestFolder {
 fn photometric_light_has_its_specified_illuminance() {
     let folder = lit();
     folder.write("open.txt", LIT.replace("emissionLuminance 20", ""));
-    // Point beside the ball: E = I cos / d^2 with I = 1000 cos.
+    // For a point beside the ball, E = I cos / d^2 with I = 1000 cos.
     let output =
         folder.expect_exit(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
     let rows: Vec<Vec<f64>> =
         output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
     assert!(output.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
     assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
-    // Point at (-0.5, 0, 0.5), 19.4712 degrees from straight down. Candela values are interpolated
-    // linearly between 0 and 30 degrees.
+    // The point is at (-0.5, 0, 0.5), which is 19.4712 degrees away from straight down. Candela
+    // values are interpolated linearly between 0 and 30 degrees.
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
@@ -58,8 +58,8 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = output.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd at 2 m give 25 lux without the pane. Each face of the pane reflects 0.04: T = (1 - F)
-    // / (1 + F).
+    // Without the pane, 100 cd at a distance of 2 m give 25 lux. Each face of the pane reflects a
+    // fraction F = 0.04, so T = (1 - F) / (1 + F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
@@ -122,7 +122,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
     folder.write("dark.txt", &dark);
     assert!(folder.expect_exit(1, "check dark.txt").out.contains("no-emitter"));
-    // The message uses the terms of the file's format.
+    // The message uses the terminology of the file's format.
     let scene =
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
     folder.write("dark.xml", scene);
@@ -153,7 +153,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     assert!(!folder.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
-/// A ball of glass between a light and a floor.
+/// A glass ball between a light and a floor.
 const CAUSTIC: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0 0 0 }
 Lights { PointLight { position 0.5 4 0 color 9 9 9 falloff 1 } }
@@ -238,7 +238,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     let write = |base, emitter, sky| folder.write("s.txt", scene(base, emitter, sky));
     folder.write("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
     folder.write("bulb.csv", "400 0\n700 3\n");
-    // The illuminance does not depend on the hue: E = pi L r^2 / (r^2 + d^2).
+    // The illuminance does not depend on the hue, since E = pi L r^2 / (r^2 + d^2).
     for emitter in
         ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum bulb.csv"]
     {
@@ -250,8 +250,8 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{emitter} {color}: {row}");
         }
     }
-    // A small area light and point lights with the same power and spectrum give a paint the same
-    // colour.
+    // A small area light and point lights with the same power and spectrum give the same colour to
+    // a paint.
     let shown = |lights: &str, objects: &str| -> Vec<f64> {
         folder.write(
             "t.txt",
@@ -321,8 +321,8 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         };
         ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
     };
-    // Reda and Andreas, 2003: for this place in Colorado the sun's elevation is 39.872 degrees and
-    // its azimuth 194.340.
+    // Reda and Andreas, 2003: at this place in Colorado, the sun has an elevation of 39.872 degrees
+    // and an azimuth of 194.340 degrees.
     let written = lux("sun -0.190061 0.641085 0.743564");
     assert!(written[3] > written[2] && written[2] > written[1] && written[1] > 0.0, "{written:?}");
     for sky in [
@@ -359,16 +359,17 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // E = I / d². If a flux is given, I = flux / 4 pi, independent of the hue.
+        // E = I / d². If a flux is given, I = flux / 4 pi, which does not depend on the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
-        // The flux fills a cone of 60 degrees around the axis: 2 pi (1 - 1/2).
+        // The flux fills a cone of 60 degrees around the axis, which has a solid angle of 2 pi (1 -
+        // 1/2).
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 0 0 angle 60 innerAngle 60 lumens 800 }",
             800.0 / pi / 4.0,
         ),
-        // The intensity is proportional to s², which is 1 on the axis; the mean of s² is a third.
+        // The intensity is proportional to s², which is 1 on the axis. The mean of s² is one third.
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 lumens 800 }", 800.0 / (pi / 3.0) / 4.0),
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 fade smooth lumens 800 }",
@@ -376,7 +377,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ),
         ("DirectionalLight { direction 0 -3 0 color 1 0.9 0.7 lux 100000 }", 100_000.0),
         ("DirectionalLight { direction 0 -3 0 color 1 1 1 lux 500 spectrum A }", 500.0),
-        // A file with 100 cd in every direction.
+        // A file that gives 100 cd in every direction.
         ("PhotometricLight { position 0 2 0 file lamp.ies }", 25.0),
         ("PhotometricLight { position 0 2 0 file lamp.ies color 0.2 0.9 0.4 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
     ] {
@@ -411,7 +412,8 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         );
         *std::fs::read(folder.path("p.ppm")).unwrap().last().unwrap()
     };
-    // White is 1.2 · 100 / S · N² / t, which is 9600 cd/m² for ISO 100, 1/125 s and f/8.
+    // White corresponds to 1.2 · 100 / S · N² / t, which is 9600 cd/m² for ISO 100, 1/125 s and
+    // f/8.
     assert_eq!(pixel("--shutter 1/125 --f-number 8"), (0.4f64 * 255.0).round() as u8);
     assert_eq!(pixel("--shutter 0.008 --f-number 8 --iso 200"), (0.8f64 * 255.0).round() as u8);
     assert_eq!(pixel("--shutter 1/250 --f-number 8 --iso 100 --exposure 1"), (0.4f64 * 255.0).round() as u8);
@@ -441,7 +443,7 @@ fn radiance_scenes_are_measured_in_lux_from_above() {
         let output = folder.expect_exit(0, measure);
         output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
     };
-    // Half of the sphere emits: pi L, with rtrace's weights and 179 lm/W.
+    // Half of the sphere emits light, so the result is pi L, with rtrace's weights and 179 lm/W.
     let expected = std::f64::consts::PI * 179.0 * (2.0 * 0.265 + 0.670 + 0.5 * 0.065);
     for row in
         rows("measure sky.rad --at 0,0,0 --grid 0,0,0:3,0,0:0,5,0:1x1 --grid 0,0,0:0,5,0:3,0,0:1x1 --samples 1024")
@@ -449,7 +451,7 @@ fn radiance_scenes_are_measured_in_lux_from_above() {
         assert_eq!(row[3..6], [0.0, 0.0, 1.0], "{row:?}");
         assert!((row[6] / expected - 1.0).abs() < 5e-3, "{row:?}, not {expected}");
     }
-    // A dark model gets no studio lights.
+    // A dark model does not get studio lights.
     assert_eq!(rows("measure dark.rad --at 0,0,0 --samples 64")[0][6], 0.0);
     assert!(rows("measure dark.rad --at 0,0,0 --samples 64 --studio soft")[0][6] > 0.1);
     // Photons are only stored on surfaces.
@@ -495,6 +497,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let text = output(&format!("Background {{ {sky} }}"));
         assert!(!text.contains("no effect") && !text.contains("grey"), "{sky}: {text}");
     }
-    // Without a background, the message must not suggest turning it off.
+    // If there is no background, the message must not suggest turning it off.
     assert!(!output("").contains("`Background { color 0 0 0 }`"), "{}", output(""));
 }

@@ -1,4 +1,5 @@
-//! Tests models on the command line: rendering, info, conversion, and errors with their position.
+//! Tests models on the command line: rendering, `info`, conversion, and errors with their
+//! positions.
 
 mod common;
 
@@ -43,7 +44,7 @@ fn model_is_converted_to_meshes_and_scenes() {
         let output = folder.expect_exit(0, &format!("convert a.stl -o {name}")).out;
         assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");
         assert_eq!(picture(name), picture("a.stl"), "{name}");
-        // Converted files are ordinary scenes.
+        // Files written by `convert` are ordinary scenes.
         folder.expect_exit(0, &format!("convert {name} -o again-{name}"));
         assert_eq!(hash(&format!("again-{name}")), hash(name), "{name}");
     }
@@ -68,7 +69,7 @@ fn crop_of_a_file_is_rendered() {
     let part = picture("part.pbrt");
     assert_eq!((part.width, part.height), (15, 12));
     assert!(part == picture("whole.pbrt --crop 5,3,15x12"));
-    // Options override the file.
+    // Options override the settings in the file.
     assert!(picture("part.pbrt --crop 0,0,30x20") == picture("whole.pbrt"));
     assert_eq!(picture("part.pbrt --size 60x40").width, 60);
 }
@@ -160,7 +161,7 @@ fn frames_are_times_cameras_and_files() {
     let folder = TestFolder::new();
     folder.write("a.stl", STL);
     let hash = |words: &str| folder.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A frame of a turntable is the same if rendered alone, or with `--turned`.
+    // A frame of a turntable does not change if it is rendered alone or with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
@@ -179,7 +180,7 @@ fn frames_are_times_cameras_and_files() {
         hash("a.xml -o a.png --camera %d --frames 0-1"),
         hash("a.xml -o a.png --camera 0") + &hash("a.xml -o a.png --camera 1")
     );
-    // Shards of frames, as rendered on farms.
+    // Renders shards of frames in the way farms do.
     for shard in [1, 2] {
         hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
     }
@@ -188,7 +189,7 @@ fn frames_are_times_cameras_and_files() {
     folder.expect_failure(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
     folder.expect_failure(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
     folder.expect_failure(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
-    // A scene with a camera cannot be turned, and the error says so.
+    // A scene that has a camera cannot be turned, and the error message says so.
     folder.expect_failure(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
     folder.expect_failure(2, "render a.stl --fps 4", &["--frames"]);
     assert!(folder.expect_exit(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));

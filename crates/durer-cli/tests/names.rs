@@ -1,5 +1,5 @@
-//! Tests file names in inputs: files outside the folder, pipes and devices must not be read and
-//! must not block.
+//! Tests file names inside input files. Files outside the folder, pipes and devices must not be
+//! read and must not block the program.
 #![cfg(unix)]
 
 mod common;
@@ -81,7 +81,7 @@ fn photo_folder_does_not_lead_outside() {
     for path in ["secret.png", "photos/a.png", "photos/b.png"] {
         picture(&folder, path);
     }
-    // Tables of points in a folder, and a file of tracks next to a reconstruction.
+    // These are tables of points in a folder, and a file of tracks next to a reconstruction.
     colmap(&folder, "solved", ["a.png", "b.png"]);
     std::fs::rename(folder.path("solved/points3D.txt"), folder.path("points")).unwrap();
     for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
@@ -135,7 +135,7 @@ fn pipes_and_devices_that_are_named_are_refused() {
         refused(&folder, line, "is not a regular file");
     }
     refused(&folder, "live pipe.txt", "not a file");
-    // A folder of pictures can contain files of any kind.
+    // A folder of pictures may contain files of any kind.
     std::fs::create_dir(folder.path("one")).unwrap();
     std::fs::create_dir(folder.path("two")).unwrap();
     picture(&folder, "one/a.png");
@@ -160,7 +160,7 @@ fn pipes_with_names_of_temporary_files_delay_no_save() {
     let folder = TestFolder::new();
     let output = folder.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
     assert_eq!(output.code, Some(0), "{}", output.err);
-    // Killed renders leave temporary files with such names.
+    // Renders that were killed leave temporary files with such names.
     for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
         fifo(&folder, name);
     }

@@ -28,12 +28,12 @@ fn shards_merge_to_the_bytes_of_one_run() {
         folder.expect_failure(2, "merge 1.part 2.part 3.part 2.part -o m.exr", &["`2.part` and `2.part` overlap"]);
         folder.expect_failure(2, "merge 1.part 2.part 3.part -o m.xyz", &["m.xyz"]);
     }
-    // The job in the parts says that pictures go to separate files.
+    // The job stored in the parts says that pictures go to separate files.
     folder.expect_exit(0, "merge 1.part 2.part 3.part -o m.png --quiet");
     folder.expect_exit(0, &format!("{SMALL} -o w.png"));
     assert!(folder.bytes("m.depth.png") == folder.bytes("w.depth.png"));
     assert!(folder.bytes("m.color.png") == folder.bytes("w.color.png"));
-    // Merging fails for parts of another picture and for files that are not parts.
+    // Merging fails if a part belongs to another picture or if a file is not a part.
     folder.expect_exit(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
     folder.expect_failure(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
     let bytes = folder.bytes("2.part");
@@ -56,7 +56,7 @@ fn stopped_work_is_resumed() {
     let hash = last_line(&folder.expect_exit(0, &format!("{work} -o calm.png")).out);
     folder.expect_exit(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(folder.path("c.part").exists(), "it cannot have been finished in 30 ms");
-    // Saved work of another job is rejected and kept.
+    // Saved work that belongs to another job is rejected and kept.
     let other = |options: &str, words: &[&str]| {
         folder.expect_failure(2, &format!("{work} --resume --checkpoint c.part -o p.png {options}"), words);
     };
@@ -72,7 +72,7 @@ fn stopped_work_is_resumed() {
     let output = folder.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
     assert_eq!(last_line(&output.out), hash);
     assert!(folder.bytes("p.png") == folder.bytes("calm.png") && !folder.path("c.part").exists());
-    // Without saved work, --resume starts a new render.
+    // If there is no saved work, --resume starts a new render.
     let output = folder.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
     assert_eq!(last_line(&output.out), hash);
 }
@@ -136,7 +136,7 @@ fn stopping_rules_and_limits() {
         "render scene.txt --size 4294967295x4 --memory 100M",
         &["needs about", "100 MiB", "--memory"],
     );
-    // A picture that is rendered in bands is equal to one rendered at once.
+    // A picture that is rendered in bands is identical to one that is rendered at once.
     let size = "--size 700x500 --samples 2 --hash";
     let [bands, whole] = ["--memory 12M", ""].map(|memory| {
         let name = if memory.is_empty() { "w.ppm" } else { "b.ppm" };
@@ -193,7 +193,7 @@ fn killed_program_is_resumed_by_the_next_run() {
 fn full_disk_is_reported_and_keeps_the_old_file() {
     let folder = TestFolder::new();
     for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
-        // Saved work replaces only saved work.
+        // Saved work may replace only other saved work.
         let old = if name == "p.part" { "" } else { "old" };
         folder.write(name, old);
         for limit in [0, 100, 500] {

@@ -4,7 +4,7 @@ mod common;
 
 use common::TestFolder;
 
-/// A ball of glass between a light and a floor.
+/// A glass ball between a light and a floor.
 const GLASS: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0.1 0.1 0.1 }
 Materials {
@@ -61,7 +61,7 @@ fn light_sampling_strategies_differ_in_noise_only() {
             let pixels = folder.image(name).pixels;
             pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
         };
-        // Mean and variance over all pixels.
+        // Returns the mean and variance over all pixels.
         (mean(&format!("{way}.luminance.pfm")), mean(&format!("{way}.variance.pfm")) / (16.0 * 12.0))
     };
     let (both, lights, bsdf) = (render("both"), render("lights"), render("bsdf"));
@@ -76,7 +76,7 @@ fn light_sampling_strategies_differ_in_noise_only() {
 #[test]
 fn denoiser_is_chosen_or_install_hint_is_printed() {
     let folder = place();
-    // Create a file with the name of the library that is not a library.
+    // Create a file that has the name of the library but is not a library.
     for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {
         folder.write(name, "no library");
     }

@@ -18,10 +18,10 @@ const FOCAL: f64 = 410.0;
 /// Length of the scene in world units.
 const LENGTH: f64 = 8.0;
 
-/// Folder of photographs rendered by Dürer.
+/// Folder with photographs that Dürer has rendered.
 const PHOTOGRAPHS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs");
 
-/// Boxes and walls with a noise texture, in uniform light.
+/// Boxes and walls with a noise texture in uniform light.
 const SCENE: &str = "
 Background { color 0.1 0.1 0.1 ambientLight 1 1 1 }
 Materials { numMaterials 3
@@ -39,7 +39,7 @@ Group { numObjects 8
   MaterialIndex 1 Box { min -2.8 0 -1.9 max -1.8 1.5 -1 } }
 ";
 
-/// Returns twenty cameras in two rows on an arc.
+/// Returns twenty cameras in two rows along an arc.
 fn cameras() -> Vec<Pose> {
     let camera = |i: usize| {
         let (angle, height) = ((f64::from(i as u32 % 10) - 4.5) * 0.11, if i < 10 { 1.4 } else { 2.6 });
@@ -49,8 +49,8 @@ fn cameras() -> Vec<Pose> {
     (0..20).map(camera).collect()
 }
 
-/// Returns the errors of a solution after alignment by a similarity transform: largest distance of
-/// a camera, and largest angle in degrees.
+/// Returns the errors of a solution after alignment by a similarity transform: the largest camera
+/// distance and the largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
     let there = align_cameras(&found, truth).unwrap();
@@ -168,8 +168,8 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
     std::fs::create_dir(folder.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
-        // 330 pixels is the true focal length, and 660 pixels is possible. One value is too long
-        // for any lens, and one causes a division by zero.
+        // The true focal length is 330 pixels, and 660 pixels would be possible. One value is too
+        // long for any lens, and another would cause a division by zero.
         let (millimetres, pixels) = match i {
             0 => ([5, 1], [1_000_000_000, 1]),
             1 => ([5, 0], [1000, 1]),
@@ -215,7 +215,7 @@ fn unsuitable_photographs_are_refused() {
     folder.write("photos/b.png", noise(2));
     folder.write("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
-    // A decoder would fill in missing parts with grey.
+    // A decoder would fill the missing parts with grey.
     let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
     folder.write("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
     refused(&["b.jpg: cannot be read as a picture: the JPEG is truncated"]);
@@ -227,7 +227,8 @@ fn unsuitable_photographs_are_refused() {
     false_matches_are_refused(&folder);
 }
 
-/// Matches of eight photographs with twenty thousand random correspondences must be rejected.
+/// The matches of eight photographs include twenty thousand random correspondences, which must be
+/// rejected.
 fn false_matches_are_refused(folder: &TestFolder) {
     let mut random = durer_photo::random::Random::new(7);
     let picture = |i: usize| {
@@ -362,10 +363,10 @@ fn objects_are_placed_in_a_photograph_with_shadows() {
             [0, 1].map(|i| [0, 1, 2].map(|c| sum[i][c] + u32::from(both[i][c])))
         })
     };
-    // Pixels without objects and shadows are equal to the photograph, except for rounding.
+    // Apart from rounding, pixels without objects and shadows are equal to the photograph.
     let [now, before] = sum(0, 0, 320, 80);
     assert!((0..3).all(|c| now[c].abs_diff(before[c]) < 320 * 80 / 100), "{now:?} {before:?}");
-    // The shadow is to the left of the red ball. Where the ball is, the picture is red instead of
+    // The shadow lies to the left of the red ball. Where the ball is, the picture is red instead of
     // grey.
     let [now, before] = sum(90, 196, 30, 10);
     assert!((0..3).all(|c| now[c] * 10 < before[c] * 9 && now[c] * 4 > before[c]), "{now:?} {before:?}");
@@ -404,8 +405,8 @@ fn object_is_placed_in_an_external_photograph() {
             [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
         })
     };
-    // The books are unchanged. The seat is darker to the left of the solid and of the ball, where
-    // the foot casts a shadow too.
+    // The books do not change. The seat is darker to the left of the solid and to the left of the
+    // ball, where the foot also casts a shadow.
     let [now, before] = luma(120, 140, 220, 230);
     assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
     for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {

@@ -1,4 +1,4 @@
-//! Tests pictures of `durer render`, and options that must not change them by a single bit.
+//! Tests the pictures of `durer render`, and options that must not change them by a single bit.
 
 mod common;
 
@@ -142,7 +142,7 @@ fn eight_bits_by_transfer() {
             &format!("render scene.txt --size 2x2 --samples 1 --crop 0,0,1x1 --transfer {transfer} -o {transfer}.png"),
         );
     }
-    // Colour of the sky, 0.2 0.1 0.5.
+    // The colour of the sky is 0.2 0.1 0.5.
     assert_eq!(folder.image8("srgb.png").pixels, [[124, 89, 188]]);
     assert_eq!(folder.image8("linear.png").pixels, [[51, 26, 128]]);
     assert_eq!(folder.image8("course.png").pixels, [[51, 25, 127]]);

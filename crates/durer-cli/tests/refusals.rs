@@ -1,4 +1,4 @@
-//! Tests that errors have a message and the right exit code, and that nothing is written.
+//! Tests that errors have a message and the correct exit code, and that nothing is written.
 
 mod common;
 
@@ -159,7 +159,7 @@ fn write_errors_have_exit_code_1_and_keep_old_files() {
         folder.expect_exit(2, &format!("render {arguments}"));
         assert_eq!(folder.bytes("old.png"), b"an old picture");
     }
-    // If one of two files cannot be written, neither is.
+    // If one of two files cannot be written, neither of them is.
     folder.expect_failure(
         1,
         "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga",
@@ -205,7 +205,7 @@ fn closed_pipes_and_odd_names_do_not_panic() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// Options of other programs get a hint at the equivalent option of Dürer.
+/// Options of other programs lead to a hint that names the equivalent option of Dürer.
 #[test]
 fn options_of_other_programs_are_pointed_to_ours() {
     let folder = TestFolder::new();

@@ -1,4 +1,4 @@
-//! Tests that converted scenes give the same picture, and that the Khronos sample models look as
+//! Tests that converted scenes produce the same picture, and that the Khronos sample models look as
 //! specified on their test cards.
 
 mod common;
@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 
 const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
 
-/// Returns the hash of a small render.
+/// Returns the hash of a small picture.
 #[track_caller]
 fn hash(folder: &TestFolder, scene: impl AsRef<Path>, more: &str) -> String {
     folder.expect_exit(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
 }
 
-/// Collects the files with these extensions in a folder and below, sorted. Skips paths with spaces,
-/// because spaces separate arguments here.
+/// Returns a sorted list of the files with these extensions in a folder and its subfolders. Paths
+/// that contain spaces are skipped because spaces separate arguments here.
 fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -35,7 +35,7 @@ fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the first file of a Khronos sample model, if the samples are available.
+/// Returns the first file of a Khronos sample model if the samples are available.
 fn khronos(name: &str) -> Option<PathBuf> {
     let folder = corpus()?.parent()?.join("samples/gltf/khronos").join(name);
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
     let mut tried = BTreeMap::new();
     let place = TestFolder::new();
     for path in all {
-        // Skip files that are not scenes, and find the dialect.
+        // Skip files that are not scenes, and determine the dialect.
         let options = LoadOptions::default();
         let read = load(&path, &options, &mut Files::default(), &mut Diagnostics::default()).unwrap();
         let Some(dialect) = read.and_then(|loaded| Some(loaded.guess.as_ref()?.dialect.name())) else { continue };
@@ -73,7 +73,8 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
         // Use every quirk of the year's program.
         let requested = format!("{files} --dialect {dialect}");
         assert_eq!(hash(&place, "back.txt", &requested), hash(&place, &path, &requested), "{shown}");
-        // JSON files store the dialect, because a keyword can have another meaning in another year.
+        // JSON files store the dialect because a keyword can have a different meaning in another
+        // year.
         place.expect_exit(0, &format!("convert {shown} -o scene.json {files}"));
         place.expect_exit(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
         let usual = hash(&place, &path, &files);
@@ -83,7 +84,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
     assert!(tried.len() >= 5, "{tried:?}");
 }
 
-/// Sample models that give the same picture after conversion to glTF.
+/// Sample models that produce the same picture after conversion to glTF.
 const WRITTEN: [&str; 12] = [
     "AlphaBlendModeTest",
     "BoxTextured",
@@ -110,7 +111,7 @@ fn converted_gltf_renders_the_same_picture() {
         assert_eq!(first, again, "{name}");
         let usual = hash(&folder, &path, "");
         assert_eq!(first, usual, "{name}");
-        // The conversion loses nothing, and so reports no loss.
+        // The conversion loses nothing, so it reports no loss.
         assert!(!output.contains("NO_COUNTERPART"), "{name}: {output}");
     }
 }
@@ -119,7 +120,7 @@ fn converted_gltf_renders_the_same_picture() {
 fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
     let place = TestFolder::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
-    // PLY and STL files are written without normals, which changes meshes with normals.
+    // PLY and STL files are written without normals, which changes meshes that have normals.
     for (mesh, its_own) in [("durer-solid.obj", false), ("knot.ply", true)] {
         let path = folder.join(mesh);
         let usual = hash(&place, &path, "--up y");
@@ -135,24 +136,24 @@ fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
     }
 }
 
-/// Width and height of the cards' pictures in pixels.
+/// Width and height of the pictures of the cards, in pixels.
 const SIDE: usize = 200;
 
 /// Expected content of a test card around a pixel.
 #[derive(Clone, Copy, Debug)]
 enum Mark {
-    /// A green tick and no red cross.
+    /// There is a green tick and no red cross.
     Tick,
-    /// A uniform colour, up to noise.
+    /// The colour is uniform except for noise.
     Color([u8; 3]),
-    /// Content that is equal to that around another pixel.
+    /// The content is equal to the content around another pixel.
     As(usize, usize),
 }
 
-/// A test card, and what must be visible at some of its pixels.
+/// A test card, and the content that must be visible at some of its pixels.
 type Card = (&'static str, &'static [(usize, usize, Mark)]);
 
-/// The cards, with what must be visible at pixels of the front view.
+/// The test cards, with the content that must be visible at pixels of the front view.
 const CARDS: &[Card] = &[
     (
         "TextureSettingsTest",
@@ -182,13 +183,13 @@ const CARDS: &[Card] = &[
     ),
 ];
 
-/// Cells behind a hidden back face, which only light from the studio lights reaches.
+/// These cells are behind a hidden back face, and only light from the studio lights reaches them.
 const BEHIND: &[Card] = &[
     ("TextureSettingsTest", &[(107, 47, Mark::Tick)]),
     ("NegativeScaleTest", &[(131, 54, Mark::Tick), (131, 73, Mark::Tick)]),
 ];
 
-/// Returns the pixels around a position.
+/// Returns the pixels around a given position.
 fn around(picture: &Image8, (x, y): (usize, usize)) -> impl Iterator<Item = [f64; 3]> {
     const REACH: usize = 7;
     let rows = y - REACH..=y + REACH;

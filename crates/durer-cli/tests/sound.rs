@@ -1,5 +1,5 @@
-//! Tests that `durer check` reports nothing for correct scenes: those of the repository, and the
-//! course's scenes except those with real faults.
+//! Tests that `durer check` reports nothing for correct scenes. These are the scenes of the
+//! repository and those of the course, except course scenes with real faults.
 
 mod common;
 
@@ -8,13 +8,13 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Expected findings for scenes of the course, with the reason.
+/// Expected findings for scenes of the course, each with its reason.
 const ODD: [(&str, &str, &str); 2] = [
     ("f04/scene2_05_inside_sphere.txt", "camera-inside", "the camera is inside a sphere, as its name says"),
     ("f04/scene8_10_transparent_vase.txt", "open-glass", "the vase is of glass, and open at its rim"),
 ];
 
-/// Expected notes for scenes of the course, which are true but harmless.
+/// Expected notes for scenes of the course, which are correct but harmless.
 const NOTES: [(&str, usize, &str); 8] = [
     ("degenerate-mesh", 6, "vases and teapots have triangles without area at their poles"),
     (
@@ -32,14 +32,14 @@ const NOTES: [(&str, usize, &str); 8] = [
 
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    // Scenes of splines use another file format.
+    // Scenes that contain splines use another file format.
     let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
     scenes.sort();
     scenes
 }
 
-/// Returns the findings for some scenes: scene, severity and code.
+/// Returns the findings for some scenes, each with its scene, severity and code.
 fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
     let folder = TestFolder::new();
     let mut command = folder.command(&format!("check --json {options}"));

@@ -1,5 +1,5 @@
-//! Tests mistakes of students, with one case for each that `check` or the reader once missed or
-//! reported incorrectly.
+//! Tests scenes with mistakes of students. There is one case for each mistake that `check` or the
+//! reader once missed or reported incorrectly.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn found(folder: &TestFolder, year: &str, options: &str, changes: &[(&str, &str)
     (findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect(), output.out)
 }
 
-/// Year, options, changes, and the code of the first finding; an empty code if there must be no
+/// Year, options, changes, and the code of the first finding. The code is empty if there must be no
 /// warning.
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static str);
 
@@ -78,7 +78,7 @@ const CASES: &[Case] = &[
     // If a floor faces down, the light is not the cause.
     ("f04", "--bounces 3", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
     ("f16", "", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
-    // Report the cause, rather than that nothing is visible or that the picture has a single
+    // Report the cause instead of saying that nothing is visible or that the picture has a single
     // colour.
     ("f04", "--bounces 3", &[("direction 0 -0.15 -1", "direction 0 0.15 1")], "camera-away"),
     (
@@ -141,8 +141,8 @@ fn cause_is_reported_first() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A colour out of range is not reported as too much light as well. An object behind glass is not
-/// reported as hidden.
+/// A colour that is out of range is not also reported as too much light. An object behind glass is
+/// not reported as hidden.
 #[test]
 fn consequences_are_not_reported() {
     let folder = TestFolder::new();
@@ -153,11 +153,11 @@ fn consequences_are_not_reported() {
     assert!(!codes.iter().any(|code| code == "unseen" || code == "hidden-behind"), "{codes:?}");
 }
 
-/// A possible intention gets at most a note, and no fix.
+/// Something that may be intended gets at most a note and no fix.
 #[test]
 fn possible_intentions_are_left_unchanged() {
     let folder = TestFolder::new();
-    // A crescent moon, and a scene with only ambient light of 1, as in the first assignment.
+    // A crescent moon, and a scene that has only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
 Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
 Materials { numMaterials 1 Material { diffuseColor 0.8 0.8 0.8 } }
@@ -177,7 +177,7 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
     }
 }
 
-/// A colour of 5 is not taken for 5 of 255, and messages use the keywords of the year.
+/// A colour of 5 is not interpreted as 5 out of 255, and messages use the keywords of the year.
 #[test]
 fn help_suggests_the_intended_value() {
     let folder = TestFolder::new();
@@ -187,12 +187,12 @@ fn help_suggests_the_intended_value() {
     assert_eq!(folder.bytes("five.txt"), before);
     let (_, text) = found(&folder, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
-    // A directional light has no position, so the help must not suggest to move it.
+    // A directional light has no position, so the help must not suggest moving it.
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
     let (_, text) = found(&folder, "f12a4", "", &[behind]);
     assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
-    // If mirrors reflect more light than they receive, do not blame the lights.
+    // If mirrors reflect more light than they receive, the lights are not blamed.
     let mirrors = [
         ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
@@ -247,8 +247,8 @@ Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
 Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }
 ";
-    // A single foreign keyword does not change a file's dialect. The message names the keyword and
-    // its equivalent.
+    // A single keyword from another dialect does not change the dialect of a file. The message
+    // names the keyword and its equivalent.
     folder.write("nodes.txt", nodes);
     let errors = folder.run("check nodes.txt").out;
     assert!(errors.contains("`angle` is not a word of f23") && errors.contains("in f23 it is `fov`"), "{errors}");
@@ -259,10 +259,10 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     folder.write("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
     let output = folder.expect_exit(2, "render binary.txt -q -o words.png");
     assert!(output.err.contains("binary") && output.err.lines().count() < 8, "{}", output.err);
-    // The message about a zero direction of a light must not be that for the camera.
+    // The message about a light with a zero direction must not be the one for the camera.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
     says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
-    // A scene that the year's own program would reject gets a note.
+    // A scene that the official program of its year would reject gets a note.
     folder.write("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let output = folder.run("check brace.txt --dialect f04 --bounces 3");
     assert!(output.out.contains("would refuse this file"), "{}{}", output.out, output.err);

@@ -8,7 +8,7 @@ use common::{ProgramOutput, SCENE, TestFolder};
 use std::os::unix::fs::symlink;
 use std::time::Duration;
 
-/// Returns a chunk of a PNG.
+/// Returns one chunk of a PNG file.
 fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut chunk = (content.len() as u32).to_be_bytes().to_vec();
     chunk.extend(kind);
@@ -22,7 +22,7 @@ fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     chunk
 }
 
-/// Returns a PNG of a single colour, with extra chunks between header and pixels.
+/// Returns a PNG with a single colour and with extra chunks between the header and the pixels.
 fn png(side: u32, between: &[u8]) -> Vec<u8> {
     let mut head = [side.to_be_bytes(), side.to_be_bytes()].concat();
     head.extend([8, 2, 0, 0, 0]);
@@ -111,7 +111,7 @@ fn large_pictures_are_refused_by_their_headers() {
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains("need about") && output.err.contains("see `--memory`"), "{line}: {}", output.err);
     }
-    // The decoded picture is copied once, so two copies exist for a moment.
+    // The decoded picture is copied once, so two copies exist for a short time.
     folder.write("large.png", png(5000, b""));
     let [texture, ..] = with_pictures(&folder, "large.png");
     let output = folder.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
@@ -177,7 +177,7 @@ fn no_input_is_overwritten() {
     folder.expect_failure(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
     folder.expect_failure(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
     folder.expect_failure(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
-    // A part file that is named like a picture.
+    // This part file has a name like that of a picture.
     folder.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
     folder.expect_failure(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
     // Saved work never overwrites other files.
@@ -233,7 +233,7 @@ fn special_files_are_written_through_or_refused_at_once() {
     folder.expect_exit(0, &format!("{work} -o null.png --no-checkpoint"));
     let reader = folder.path("pipe.png");
     let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
-    // The reader may not be ready at once.
+    // The reader may not be ready immediately.
     let output = (0..100).map(|_| folder.run(&format!("{work} -o pipe.png"))).find(|output| output.code == Some(0));
     assert!(output.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
 }
@@ -286,7 +286,7 @@ fn terminating_signals_save_the_work() {
         assert!(output.err.contains("o.png.part (--resume"), "{signals:?}: {}", output.err);
         assert!(latency < Duration::from_secs(5), "{latency:?}");
     }
-    // A program that was started with nohup survives the end of its terminal.
+    // A program that was started with nohup keeps running when its terminal is closed.
     let output = folder.shell(
         "trap '' HUP; $DURER render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
          sleep 0.3; kill -HUP $!; wait $!",
@@ -324,8 +324,8 @@ fn system_limits_are_named_errors() {
 #[test]
 fn calling_thread_does_all_work_without_threads() {
     let folder = TestFolder::new();
-    // The superuser is not limited by permissions, so the test runs as the user nobody, in a folder
-    // that this user cannot write to.
+    // Permissions do not limit the superuser. The test therefore runs as the user nobody, in a
+    // folder that this user cannot write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let usable = folder.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
     if usable.code != Some(0) {

@@ -53,7 +53,7 @@ fn watch_survives_file_changes() {
     };
     for name in ["scene.txt", "mesh.obj"] {
         let whole = if name == "scene.txt" { scene("0.9 0.1 0.1") } else { MESH.replace("v 1 0 0", "v 2 0 0") };
-        /// A way to change a watched file: its name in messages, and a function that does it.
+        /// A way to change a watched file, with its name in messages and a function that does it.
         type Fire<'a> = (&'a str, Box<dyn Fn() + 'a>);
         let fires: [Fire; 9] = [
             ("a removal", Box::new(|| remove(name))),
@@ -102,13 +102,13 @@ fn watch_survives_file_changes() {
             fire();
             pause();
             remove(name);
-            // Replace the file by renaming, as editors do.
+            // Replace the file by renaming another one, as editors do.
             folder.write("new", &whole);
             std::fs::rename(folder.path("new"), folder.path(name)).unwrap();
             shows_what_is_there(&folder, &mut child, &format!("{what} in place of {name}"));
         }
     }
-    // Modification times go back to the past and forward to the future.
+    // Modification times are set to the past and to the future.
     for date in ["1970-01-01", "2001-01-01", "2099-01-01", "1960-01-01"] {
         folder.write("scene.txt", scene(if date < "2001" { "0.1 0.9 0.2" } else { "0.1 0.2 0.9" }));
         let _ = Command::new("touch").args(["-d", date]).arg(folder.path("scene.txt")).status();

@@ -59,8 +59,8 @@ fn info_as_text_and_json() {
             .replace("numObjects 2", "numObjects 3"),
     );
     let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info mesh.txt --json").out).unwrap();
-    // The tree is a single leaf: the root and one box of equal size. Three vertices take 36 bytes,
-    // an index 4, a node 256, and the padding of a leaf 320.
+    // The tree is a single leaf, so it has the root and one box of equal size. The three vertices
+    // take 36 bytes, an index takes 4, a node takes 256, and the padding of a leaf takes 320.
     assert_eq!((json["tree_cost"].as_f64(), json["bytes_per_triangle"].as_f64()), (Some(2.0), Some(616.0)));
 }
 
@@ -76,7 +76,7 @@ fn converted_scene_is_the_same() {
         folder.expect_exit(0, &format!("convert again.txt -o twice.txt {options}"));
         assert_eq!(folder.bytes("again.txt"), folder.bytes("twice.txt"));
     }
-    // An input is never overwritten.
+    // An input file is never overwritten.
     let before = folder.bytes("again.txt");
     folder.expect_failure(2, "convert again.txt -o again.txt", &["again.txt", "is an input of this run"]);
     assert_eq!(folder.bytes("again.txt"), before);
@@ -94,7 +94,8 @@ fn words_are_looked_up() {
     for part in ["f23", "position", "required", "falloff", "Example:\n    PointLight {"] {
         assert!(light.contains(part), "{part} is not in\n{light}");
     }
-    // The entry of a field names the blocks that have it; a dialect lists only its own words.
+    // The entry for a field names the blocks that have the field, and a dialect lists only its own
+    // words.
     assert!(folder.expect_exit(0, "words radius").out.contains("in Sphere\n"));
     assert!(!folder.expect_exit(0, "words --dialect f04").out.contains("Torus"));
     folder.expect_failure(2, "words Spere", &["did you mean `Sphere`?"]);

@@ -1,4 +1,5 @@
-//! Tools for teaching: checks that explain a wrong picture, common mistakes, and the lesson.
+//! Tools for teaching: checks that explain why a picture is wrong, a collection of common mistakes,
+//! and the lesson.
 
 pub mod check;
 pub mod lesson;

@@ -1,4 +1,4 @@
-//! Builds a binary tree over references, top down, by the surface area heuristic.
+//! Builds a binary tree over references from the top down, guided by the surface area heuristic.
 
 use super::builder::{Bin, Builder, half_area};
 use super::object_split::HALVING_DEPTH;
@@ -13,16 +13,17 @@ use glam::Vec4;
 /// Number of references above which subtrees are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// Node of a binary BVH during construction, before it is collapsed to nodes with eight children.
-/// Nodes are in depth-first order: the left child follows its parent, and the right child follows
-/// the left subtree. There may be unused nodes between subtrees that were built in parallel.
+/// Node of a binary BVH during construction, before it is collapsed into nodes with eight children.
+/// Nodes are stored in depth-first order: the left child follows its parent, and the right child
+/// follows the left subtree. There may be unused nodes between subtrees that were built in
+/// parallel.
 #[derive(Clone, Copy, Debug)]
 pub struct BinaryNode {
-    /// Minimum corner. The fourth lane holds the number of references, tagged as leaf or inner
-    /// node.
+    /// Minimum corner. The fourth lane holds the number of references, with a tag that
+    /// distinguishes leaves from inner nodes.
     pub min: Vec4,
-    /// Maximum corner. The fourth lane holds the first reference of a leaf, or half the distance
-    /// from an inner node to its right child.
+    /// Maximum corner. In a leaf, the fourth lane holds the position of the first reference. In an
+    /// inner node, it holds half the distance to the right child.
     pub max: Vec4,
 }
 
@@ -30,7 +31,7 @@ const INNER: u32 = 2;
 const LEAF: u32 = 3;
 
 impl BinaryNode {
-    /// An unused entry of the list of nodes.
+    /// An unused entry in the list of nodes.
     pub const NONE: BinaryNode = BinaryNode { min: Vec4::ZERO, max: Vec4::ZERO };
 
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
@@ -44,7 +45,7 @@ impl BinaryNode {
         BinaryNode { min, max }
     }
 
-    /// Returns false for [`BinaryNode::NONE`].
+    /// Returns true unless this is [`BinaryNode::NONE`].
     #[inline]
     pub fn is_there(&self) -> bool {
         self.count() > 0
@@ -55,19 +56,19 @@ impl BinaryNode {
         self.min.w.to_bits() >> 28 == LEAF
     }
 
-    /// Number of references in the subtree.
+    /// Returns the number of references in the subtree.
     #[inline]
     pub fn count(&self) -> usize {
         decode_lane(self.min.w) as usize
     }
 
-    /// Position of a leaf's first reference.
+    /// Returns the position of the first reference of a leaf.
     #[inline]
     pub fn first(&self) -> usize {
         decode_lane(self.max.w) as usize
     }
 
-    /// Distance from the node to its right child, in nodes.
+    /// Returns the distance from the node to its right child, in nodes.
     #[inline]
     pub fn right(&self) -> usize {
         2 * decode_lane(self.max.w) as usize
@@ -78,31 +79,33 @@ impl BinaryNode {
     }
 }
 
-/// A binary BVH during construction. `scale` is the factor for sizes before areas are compared.
+/// A binary BVH during construction. `scale` is the factor by which sizes are multiplied before
+/// areas are compared.
 pub struct BinaryTree {
     pub nodes: Vec<BinaryNode>,
     pub scale: f32,
-    /// True if a primitive is in several leaves.
+    /// True if some primitive is in several leaves.
     pub has_splits: bool,
 }
 
-/// Part of the list of references from which a subtree is built.
+/// Section of the list of references from which a subtree is built.
 struct BuildRange<'a> {
-    /// References of the subtree, followed by space for those that splits add.
+    /// References in the subtree, followed by free space for references that splits add.
     references: &'a mut [Reference],
     /// Position of the first reference in the list of all references.
     first: usize,
     searches: SearchHistory,
 }
 
-/// Result of building a subtree: the number of references in it, and of nodes reserved for it.
+/// Result of building a subtree: the number of references in it, and the number of nodes reserved
+/// for it.
 struct SubtreeSize {
     references: u32,
     nodes: usize,
 }
 
-/// Builds a binary tree over at least one reference. Also returns the references to which the
-/// leaves refer; list entries outside of all leaves are meaningless. If `corners` is not empty,
+/// Builds a binary tree over at least one reference. Also returns the references that the leaves
+/// refer to. List entries that belong to no leaf are meaningless. If `corners` is not empty,
 /// triangles may be split.
 pub fn build(
     mut references: Vec<Reference>,
@@ -119,16 +122,16 @@ pub fn build(
     let space = BuildRange { references: &mut references, first: 0, searches: SearchHistory::default() };
     let counts = builder.subtree(space, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
-    // Most of the space was for leaves with one reference.
+    // Most of the space was reserved for leaves with a single reference.
     nodes.shrink_to_fit();
     (BinaryTree { nodes, scale, has_splits: counts.references > all.count }, references)
 }
 
 impl BuildRange<'_> {
-    /// Start of the right child's range, given the numbers of references in both children.
+    /// Returns the start of the right child's range, given the number of references in each child.
     ///
-    /// Space for splits is shared in proportion to the numbers of references, but a child with too
-    /// few references to be split gets none.
+    /// Space for splits is shared in proportion to the number of references. A child with too few
+    /// references to be split gets none.
     fn middle(&self, left: usize, right: usize) -> usize {
         let spare = self.references.len() - left - right;
         let for_left = match [left, right].map(|count| count > MIN_REFERENCES) {
@@ -210,8 +213,8 @@ mod tests {
     use crate::node::MAX_ITEMS;
     use crate::triangles::tests::bars;
 
-    /// Checks a tree over `triangles` triangles with space for `space` references. Returns the
-    /// number of unused nodes.
+    /// Checks a tree over `triangles` triangles that was built with space for `space` references.
+    /// Returns the number of unused nodes.
     fn check(tree: &BinaryTree, references: &[Reference], triangles: usize, space: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; space]);
         let (mut is_visited, mut stack) = (vec![false; triangles], vec![0]);
@@ -244,9 +247,9 @@ mod tests {
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
 
-    /// Every triangle is in a leaf, leaves do not share references, nodes are where their parents
-    /// refer to, and other nodes are unused. Holds if splits are limited by their use or by space,
-    /// and for parallel builds.
+    /// Every triangle is in a leaf, leaves do not share references, nodes are at the positions
+    /// their parents refer to, and all other nodes are unused. This holds when splits are limited
+    /// by their benefit or by space, and for parallel builds.
     #[test]
     fn leaves_are_disjoint_and_complete() {
         let mut random = Random(11);

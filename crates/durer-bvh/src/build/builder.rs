@@ -1,4 +1,4 @@
-//! Parameters of a build, and growing boxes, used for both object splits and spatial splits.
+//! Parameters of a build, and the growing boxes used for both object splits and spatial splits.
 
 use super::reference::Reference;
 use crate::math::{Aabb, Vec3};
@@ -8,7 +8,7 @@ use glam::Vec4;
 /// Number of references above which they are processed in parallel.
 pub const MIN_PARALLEL: usize = 1 << 15;
 
-/// Half the surface area of a scaled box.
+/// Returns half the surface area of a scaled box.
 #[inline]
 pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     let d = ((max - min) * scale).max(Vec4::ZERO);
@@ -18,17 +18,17 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
 /// Parameters for building a binary tree: scale, root area, and limits on leaves and bins.
 pub struct Builder<'a> {
     pub scale: f32,
-    /// Half the surface area of the root.
+    /// Half the surface area of the root node.
     pub area: f32,
     /// Maximum number of references that may stay together in one leaf.
     pub whole: usize,
-    /// Maximum number of bins for a number of references.
+    /// Returns the maximum number of bins for a number of references.
     pub bins: fn(usize) -> usize,
-    /// Corners of the triangles that may be split; empty for other primitives.
+    /// Corners of the triangles that may be split. The slice is empty for other primitives.
     pub corners: &'a [[Vec3; 3]],
 }
 
-/// A box that grows with each reference that is added, and the number of references in it.
+/// A box that grows with each added reference, and the number of references in it.
 #[derive(Clone, Copy)]
 pub struct Bin {
     pub min: Vec4,
@@ -64,16 +64,17 @@ impl Bin {
         Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
     }
 
-    /// Cost by the surface area heuristic: the scaled area of the box times the number of
-    /// references.
+    /// Returns the cost by the surface area heuristic: the scaled area of the box times the number
+    /// of references.
     #[inline]
     pub fn cost(&self, scale: f32) -> f32 {
         half_area(self.min, self.max, scale) * self.count as f32
     }
 }
 
-/// Bounding box of the values of `of` for all references. It grows four boxes in turn, since each
-/// step of one box waits for its previous step.
+/// Returns the bounding box of the values that `of` returns for all references. The function grows
+/// four boxes in turn because each step of one box has to wait for the previous step of the same
+/// box.
 pub fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);

@@ -1,5 +1,5 @@
-//! Tree building: references to primitives, a binary tree over them, and the eight-wide nodes made
-//! from it.
+//! Builds trees: references to primitives, a binary tree over them, and eight-wide nodes made from
+//! the binary tree.
 
 mod binary;
 mod builder;
@@ -22,14 +22,14 @@ use settings::MIN_GAIN;
 use wide::CollapsePlan;
 
 /// Number of reinsertion passes after which a tree with split triangles is compared with the best
-/// one so far. A better binary tree can give a worse wide tree, especially after splits.
+/// tree so far. A better binary tree can still give a worse wide tree, especially after splits.
 const UNCHECKED_PASSES: usize = 2;
 
 /// A finished tree with eight children per node, from which [`Bvh`](super::Bvh) and
 /// [`TriangleBvh`](super::TriangleBvh) are made.
 pub(super) struct Tree {
     pub nodes: Vec<WideNode>,
-    /// Primitive numbers in the order of the leaves.
+    /// Primitive numbers, in the order in which the leaves refer to them.
     pub order: Vec<u32>,
     pub bounds: Aabb,
 }
@@ -68,21 +68,22 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
     Tree { nodes, order, bounds }
 }
 
-/// Improves a tree by reinsertion as long as that pays, and returns the best collapse plan.
+/// Improves a tree by reinsertion as long as the improvement is worth the time, and returns the
+/// best collapse plan.
 fn improved(tree: &mut binary::BinaryTree, settings: &BuildSettings) -> CollapsePlan {
     let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
-    // With fewer than five nodes, there are no nodes below the root's children that could be moved.
+    // With fewer than five nodes, there are no nodes below the root's children to move.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
     }
     let mut work = LinkedTree::new(tree);
     for pass in 1..=settings.reinsertions {
-        // Also stops if areas are NaN.
+        // This condition also stops the loop if areas are NaN.
         let goes_on = work.pass() >= MIN_GAIN && pass < settings.reinsertions;
         if !goes_on || pass == UNCHECKED_PASSES && tree.has_splits {
             let Some(nodes) = work.in_order() else { break };
             let others = CollapsePlan::new(&nodes, tree.scale, settings);
-            // At equal cost, fewer triangles are tested.
+            // If two trees have equal costs, fewer triangle tests are better.
             if others.cost <= 1.01 * plans.cost {
                 (tree.nodes, plans) = (nodes, others);
             } else {

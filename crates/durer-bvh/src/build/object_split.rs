@@ -1,6 +1,6 @@
-//! Object splits: partitions of references into two sets by the surface area heuristic.
+//! Object splits: partitions of references into two sets, chosen by the surface area heuristic.
 //!
-//! Large sets of references are binned along each axis. For small sets, all partitions are
+//! Large sets of references are binned along each axis. For small sets, all possible partitions are
 //! compared. Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT
 //! 2007.
 
@@ -10,15 +10,15 @@ use super::settings::BINS;
 use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
-/// Depth from which references are split into halves of equal number, which bounds the depth of all
-/// trees: 2^28 primitives are halved 28 times.
+/// Depth below which references are always split into two halves of equal size. This bounds the
+/// depth of all trees because 2^28 primitives can be halved 28 times.
 pub const HALVING_DEPTH: usize = 60;
 /// Maximum number of references for which all partitions are compared.
 const MAX_EXHAUSTIVE: usize = 4;
-/// Number of references from which each half of the list has its own bins.
+/// Minimum number of references for which each half of the list gets its own bins.
 const MIN_FOR_MORE_BINS: usize = 64;
 
-/// Intervals of equal width along each axis into which the centres of references are binned.
+/// Intervals of equal width along each axis, into which the centres of references are binned.
 #[derive(Clone, Copy)]
 struct BinGrid {
     low: Vec4,
@@ -29,17 +29,18 @@ struct BinGrid {
 impl BinGrid {
     fn new(references: &[Reference], bins: usize) -> BinGrid {
         let [low, high] = middles(references);
-        // If an extent is zero or out of range, everything falls into the first bin.
+        // If an extent is zero or out of range, all references fall into the first bin.
         let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
         let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
         BinGrid { low, scale, bins }
     }
 
-    /// Bins of a reference along each axis, added to 2^23, so that the lowest bit counts 1.
+    /// Returns the bins of a reference along each axis, added to 2^23 so that the lowest bit of the
+    /// number counts as 1.
     #[inline(always)]
     fn at(&self, r: &Reference) -> Vec4 {
         let at = (r.double_center() - self.low) * self.scale - 0.5;
-        // Replaces NaN, too.
+        // This also replaces NaN.
         let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
         at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
     }
@@ -47,12 +48,13 @@ impl BinGrid {
 
 const FIRST: f32 = (1 << 23) as f32;
 
-/// Bounds of all [`Reference::middle`].
+/// Returns the bounds of [`Reference::middle`] over all references.
 fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.double_center(); 2])
 }
 
-/// Bin of an object split along all three axes at once: a box and a number of references per axis.
+/// Bin of an object split for all three axes at once: one box and one number of references per
+/// axis.
 #[derive(Clone, Copy)]
 struct Bins {
     boxes: [[Vec4; 2]; 3],
@@ -70,7 +72,7 @@ impl Bins {
         self.counts += other.counts;
     }
 
-    /// Costs along all axes.
+    /// Returns the costs along all axes.
     #[inline(always)]
     fn costs(&self, scale: f32) -> Vec4 {
         let size = |axis: usize| ((self.boxes[axis][1] - self.boxes[axis][0]) * scale).max(Vec4::ZERO);
@@ -85,7 +87,7 @@ impl Bins {
     }
 }
 
-/// Puts references into bins.
+/// Distributes references among the bins.
 fn fill_bins<const N: usize>(references: &[Reference], grid: &BinGrid) -> [Bins; N] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
@@ -103,9 +105,9 @@ fn fill_bins<const N: usize>(references: &[Reference], grid: &BinGrid) -> [Bins;
             bins.counts[axis] += 1;
         }
     };
-    // Consecutive references often fall into the same bin and would wait for each other, so
-    // alternate between the two halves of the list. All references fall into the same bin if there
-    // is only one along an axis.
+    // Consecutive references often fall into the same bin, where each update would wait for the
+    // previous one. Therefore the loop alternates between the two halves of the list. If there is
+    // only one bin along an axis, all references fall into it.
     let (a, b) = references.split_at(references.len() / 2);
     if references.len() < MIN_FOR_MORE_BINS {
         for (a, b) in a.iter().zip(b) {
@@ -133,20 +135,20 @@ pub struct ObjectSplit {
     rule: SplitRule,
 }
 
-/// Rule by which an object split assigns references to the left or right set.
+/// Rule that decides whether a reference goes to the left or the right set of an object split.
 enum SplitRule {
-    /// The left set has the references in bins before a border along an axis.
+    /// The left set contains the references whose bins are before a border along an axis.
     Bins { grid: BinGrid, axis: usize, border: usize },
-    /// The left set has the references whose bits are set in the mask.
+    /// The left set contains the references whose bits are set in the mask.
     Mask(usize),
-    /// The left set has the first half of the references, sorted along the longest axis.
+    /// The left set contains the first half of the references, sorted along the longest axis.
     Half,
 }
 
 impl Builder<'_> {
     /// Finds the cheapest partition of the references.
     pub fn object_split(&self, references: &[Reference], all: &Bin, depth: usize) -> ObjectSplit {
-        // The boxes of both sides are not known yet, but lie within `all`.
+        // The boxes of both sides are not known yet, but they lie within `all`.
         let half = ObjectSplit { cost: all.cost(self.scale), sides: [*all; 2], rule: SplitRule::Half };
         let count = references.len();
         if depth >= HALVING_DEPTH {
@@ -160,12 +162,12 @@ impl Builder<'_> {
         }
     }
 
-    /// Finds the cheapest border between bins; `None` if all centres are in one bin.
+    /// Finds the cheapest border between two bins. Returns `None` if all centres are in one bin.
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<ObjectSplit> {
         let grid = BinGrid::new(references, (self.bins)(references.len()).min(N));
         let bins = fill_bins::<N>(references, &grid);
-        // Compute the costs to the right of each border, then the costs to the left, for all axes
-        // at once.
+        // Compute the costs to the right of each border and then the costs to the left, for all
+        // axes at once.
         let mut right_costs = [Vec4::ZERO; N];
         let mut right = Bins::EMPTY;
         for i in (1..grid.bins).rev() {
@@ -189,7 +191,7 @@ impl Builder<'_> {
         (cost < f32::INFINITY).then_some(ObjectSplit { cost, sides, rule: SplitRule::Bins { grid, axis, border } })
     }
 
-    /// Compares all partitions of a few references.
+    /// Compares all partitions of a small number of references.
     fn exhaustive(&self, references: &[Reference]) -> ObjectSplit {
         let count = references.len();
         let full = (1 << count) - 1;
@@ -210,13 +212,13 @@ impl Builder<'_> {
         ObjectSplit { cost, sides: [sets[mask], sets[full - mask]], rule: SplitRule::Mask(mask) }
     }
 
-    /// Partitions the references in place. Returns the boxes of both sets and the size of the
-    /// first.
+    /// Partitions the references in place. Returns the boxes of both sets and the size of the first
+    /// set.
     pub fn divide(&self, references: &mut [Reference], cut: &ObjectSplit) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
         match cut.rule {
             SplitRule::Bins { grid, axis, border } => {
-                // Along the other axes, no bin is before the border.
+                // Along the other two axes, no bin lies before the border.
                 let mut borders = Vec4::NEG_INFINITY;
                 borders[axis] = FIRST + border as f32;
                 partition(references, |r| grid.at(r).cmplt(borders).any());
@@ -246,12 +248,12 @@ fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool)
     for i in 0..references.len() {
         let (here, other) = (references[i], references[left]);
         (references[i], references[left]) = (other, here);
-        // Branchless, since a branch would be mispredicted half of the time.
+        // The loop has no branches because a branch would be mispredicted half of the time.
         left += usize::from(is_left(&here));
     }
 }
 
-/// Sorts along the longest axis and splits in the middle.
+/// Sorts the references along the longest axis and splits the list in the middle.
 fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
     let [low, high] = middles(references);
     let axis = (high - low).truncate().max_position();

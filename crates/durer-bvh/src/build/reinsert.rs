@@ -1,4 +1,5 @@
-//! Optimises a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
+//! Optimises a binary tree by reinsertion, which moves each subtree to the place where it enlarges
+//! boxes least.
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.
@@ -10,11 +11,11 @@ use crate::lanes::vec_on_large_pages;
 use crate::node::MAX_DEPTH;
 use crate::parallel;
 
-/// Share of the nodes that a pass examines. If a lot can be saved, a few nodes give most of the
-/// savings.
+/// Fraction of the nodes that a pass examines. If a lot can be saved, a small number of nodes gives
+/// most of the savings.
 const SHARE: f64 = 0.04;
-/// Additional shares of the nodes that a pass examines if possible savings do not predict actual
-/// ones.
+/// Additional fraction of the nodes that a pass examines if the possible savings do not predict the
+/// actual ones.
 const EXTRA_SHARES: usize = 3;
 /// Maximum number of nodes visited in a search for a better place.
 const MAX_VISITS: usize = 1 << 8;
@@ -35,7 +36,7 @@ struct LinkedNode {
     node: BinaryNode,
     area: f32,
     parent: u32,
-    /// `NONE` in leaves.
+    /// Leaves have `NONE` here.
     children: [u32; 2],
 }
 
@@ -47,10 +48,10 @@ struct Move {
     to: u32,
 }
 
-/// A node that may be moved, after the maximum area that moving it can save.
+/// A node that may be moved, preceded by the maximum area that moving it can save.
 type Candidate = (f32, u32);
 
-/// Partitions `nodes` into the `count` nodes with the greatest possible savings, and the others.
+/// Moves the `count` nodes with the greatest possible savings to the front of `nodes`.
 fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candidate]) {
     let count = count.min(nodes.len());
     if count < nodes.len() {
@@ -64,8 +65,8 @@ impl LinkedTree {
     pub fn new(tree: &BinaryTree) -> Self {
         let scale = tree.scale;
         let mut nodes: Vec<LinkedNode> = vec_on_large_pages(tree.nodes.len());
-        // Nodes are in depth-first order: each is a child of the last node with fewer than two
-        // children.
+        // Nodes are in depth-first order, so each node is a child of the last node that has fewer
+        // than two children.
         let mut parents = Vec::new();
         for &node in tree.nodes.iter().filter(|node| node.is_there()) {
             let i = nodes.len() as u32;
@@ -93,10 +94,10 @@ impl LinkedTree {
     }
 
     /// Searches for better places for the nodes with the greatest possible savings and applies the
-    /// moves that do not conflict. Returns the share of the total area that they save.
+    /// moves that do not conflict. Returns the fraction of the total area that the moves save.
     pub fn pass(&mut self) -> f64 {
         // Removing a subtree saves at least its parent's area, and inserting it costs at least its
-        // own area. `max` also replaces the NaN difference of infinite areas.
+        // own area. `max` also replaces the NaN that results from subtracting infinite areas.
         let savings = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children are never moved.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
@@ -106,8 +107,8 @@ impl LinkedTree {
         let (next, rest) = greatest(rest, count / 4);
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
-        // If the actual savings hardly decrease with the possible ones, the possible ones do not
-        // predict where to search. Examine more nodes.
+        // If the actual savings hardly decrease as the possible savings decrease, the possible
+        // savings do not show where to search. In this case, examine more nodes.
         let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
@@ -130,13 +131,13 @@ impl LinkedTree {
         (before - self.area) / before
     }
 
-    /// Finds better places for some nodes.
+    /// Finds better places for some of the nodes.
     fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
         parallel::filter_map(candidates, 64, |&(_, from)| self.find(from))
     }
 
-    /// Returns true if a node is in a subtree, for example because an earlier move of the same pass
-    /// has put it there.
+    /// Returns true if a node is in a subtree, for example because an earlier move in the same pass
+    /// put it there.
     fn is_below(&self, mut i: u32, subtree: u32) -> bool {
         while i != NONE && i != subtree {
             i = self.at(i).parent;
@@ -144,14 +145,14 @@ impl LinkedTree {
         i == subtree
     }
 
-    /// Finds the best place for a subtree: searches upwards from its position, and from there down
-    /// into the siblings.
+    /// Finds the best place for a subtree. The search goes up from its current position, and from
+    /// each level down into the siblings.
     fn find(&self, from: u32) -> Option<Move> {
         let LinkedNode { node, area, parent, .. } = *self.at(from);
         let merged =
             |other: &LinkedNode| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
         let mut best = Move { gain: 0.0, from, to: NONE };
-        // Removing the subtree removes its parent, and the boxes above shrink.
+        // Removing the subtree also removes its parent, and the boxes above shrink.
         let mut saved = self.at(parent).area;
         let mut pivot = parent;
         let mut sibling = self.sibling(from);
@@ -211,7 +212,7 @@ impl LinkedTree {
         self.nodes[new as usize].parent = parent;
     }
 
-    /// Refits boxes from a node upwards until nothing changes.
+    /// Refits boxes from a node upwards until a box does not change.
     fn refit(&mut self, mut i: u32) {
         while i != NONE && self.fit(i) {
             i = self.at(i).parent;
@@ -230,7 +231,7 @@ impl LinkedTree {
         is_other
     }
 
-    /// Nodes in depth-first order with their counts; `None` if the tree is too deep.
+    /// Returns the nodes in depth-first order with their counts, or `None` if the tree is too deep.
     pub fn in_order(&self) -> Option<Vec<BinaryNode>> {
         let mut nodes: Vec<BinaryNode> = vec_on_large_pages(self.nodes.len());
         let mut stack = vec![(0, 1)];
@@ -245,7 +246,7 @@ impl LinkedTree {
                 stack.extend([(right, depth + 1), (left, depth + 1)]);
             }
         }
-        // Children come after their parents, so counts are added from the end.
+        // Children come after their parents, so counts are added up from the end of the list.
         let mut below = vec![1_u32; nodes.len()];
         for i in (0..nodes.len()).rev() {
             let node = nodes[i];
@@ -268,13 +269,13 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::Random;
 
-    /// After each pass, boxes and areas match their children, leaves hold the same primitives, and
-    /// the saved area is as reported.
+    /// After each pass, boxes and areas match the children, leaves hold the same primitives, and
+    /// the saved area is the one that the pass returned.
     #[test]
     fn boxes_fit_after_each_pass() {
         let mut random = Random(3);
         for count in [5, 60, 3_000, 6_000] {
-            // A few large boxes among many small ones, so that the first tree is not optimal.
+            // A few large boxes lie among many small ones, so the first tree is not optimal.
             let square = |x: f32| x * x;
             let boxes: Vec<Aabb> = (0..count)
                 .map(|_| {
@@ -282,7 +283,7 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            // With few references in a leaf, unused nodes remain between subtrees that were built
+            // If leaves have few references, unused nodes remain between subtrees that were built
             // in parallel.
             let settings = BuildSettings { compact_leaf_size: 3, ..BuildSettings::PRIMITIVES };
             let (tree, _) = binary::build(references(&boxes), &settings, &[]);

@@ -1,9 +1,10 @@
-//! Spatial splits: planes that divide the space of a node, so that a triangle can be in both
-//! children, each with a part of its box.
+//! Spatial splits: planes that divide the space of a node. A triangle can end up in both children,
+//! each with part of its box.
 //!
-//! If the two boxes of the cheapest object split overlap, planes are also tried. A plane splits the
-//! triangles that it intersects, unless it is cheaper to keep a triangle whole on one side. Source:
-//! Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
+//! If the two boxes of the cheapest object split overlap, split planes are also tried. A plane
+//! splits the triangles that it intersects, except those that are cheaper to keep whole on one
+//! side. Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG
+//! 2009.
 
 use super::builder::{Bin, Builder, half_area};
 use super::object_split::ObjectSplit;
@@ -12,29 +13,31 @@ use super::settings::BINS;
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
-/// Minimum overlap for which planes are tried, as a share of the node's area.
+/// Minimum overlap of the two boxes for which planes are tried, as a fraction of the node's area.
 const MIN_OVERLAP: f32 = 0.226;
-/// Minimum overlap for which planes are tried, as a share of the root's area.
+/// Minimum overlap of the two boxes for which planes are tried, as a fraction of the root's area.
 const MIN_ROOT_OVERLAP: f32 = 1e-5;
-/// Minimum extent of the node along the normal of a plane, as a share of its longest extent.
+/// Minimum extent of the node along the normal of a plane, as a fraction of the node's longest
+/// extent.
 const MIN_EXTENT: f32 = 0.3;
-/// Maximum cost of a plane, as a share of the cost of the best partition.
+/// Maximum cost of a plane, as a fraction of the cost of the best partition.
 const MAX_RELATIVE_COST: f32 = 0.95;
-/// Number of references up to which splits save less than they cost.
+/// Maximum number of references for which splits cost more than they save.
 pub const MIN_REFERENCES: usize = 330;
-/// Number of failed searches on the path from the root after which levels are skipped: first one,
-/// then two, up to four.
+/// Number of failed searches on the path from the root after which levels are skipped: at first one
+/// level, then two, up to four.
 const MAX_FAILURES: u32 = 3;
 
-/// Counters of the failed searches for split planes above a node, which make the build skip levels.
+/// Counters of the failed searches for split planes above a node. They decide when the build skips
+/// levels.
 #[derive(Clone, Copy, Default)]
 pub struct SearchHistory {
     failures: u32,
     pause: u32,
 }
 
-/// A candidate plane for a spatial split. The cost is the sum of area times number of references
-/// over both sides.
+/// A candidate plane for a spatial split. Its cost is the sum, over both sides, of the area times
+/// the number of references.
 struct SplitPlane {
     cost: f32,
     axis: usize,
@@ -42,8 +45,8 @@ struct SplitPlane {
 }
 
 impl Builder<'_> {
-    /// References on both sides of the best plane, if that is better than `cut` and adds at most
-    /// `spare` references.
+    /// Returns the references on both sides of the best plane if that plane is better than `cut`
+    /// and adds at most `spare` references.
     pub fn spatial_split(
         &self,
         references: &[Reference],
@@ -78,7 +81,7 @@ impl Builder<'_> {
         (lens.iter().all(|&len| 0 < len && len < count) && lens[0] + lens[1] <= count + spare).then_some(parts)
     }
 
-    /// Finds the cheapest plane between bins of equal width.
+    /// Finds the cheapest plane among the borders between bins of equal width.
     fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<SplitPlane> {
         if !(bounds.max - bounds.min).truncate().is_finite() {
             return None;
@@ -92,14 +95,14 @@ impl Builder<'_> {
     }
 
     fn plane_across<const AXIS: usize>(&self, references: &[Reference], bounds: &Bin) -> Option<SplitPlane> {
-        // A few references need only a few bins.
+        // A small number of references needs only a few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
         let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
         if high - low < MIN_EXTENT * (bounds.max - bounds.min).truncate().max_element() {
             return None;
         }
         let width = (high - low) / count as f32;
-        // Flat and immense nodes are not split.
+        // Flat nodes and extremely large nodes are not split.
         if !(width.is_normal() && low + width > low && high - width < high) {
             return None;
         }
@@ -144,7 +147,7 @@ impl Builder<'_> {
     }
 
     /// References on both sides of a plane. References that intersect the plane are split, unless
-    /// enlarging the box of one side costs less.
+    /// it costs less to enlarge the box of one side.
     fn halves(&self, references: &[Reference], &SplitPlane { axis, at, .. }: &SplitPlane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
@@ -176,7 +179,7 @@ impl Builder<'_> {
         let cost = |[l, r]: &[Bin; 2]| l.cost(scale) + r.cost(scale);
         for (whole, [a, b]) in through {
             let [l, r] = sides;
-            // Both sides already include the halves of this reference.
+            // Both sides already include the two halves of this reference.
             let all_left = [l.around(&whole), Bin { count: r.count - 1, ..r }];
             let all_right = [Bin { count: l.count - 1, ..l }, r.around(&whole)];
             if cost(&sides) < cost(&all_left).min(cost(&all_right)) {
@@ -194,14 +197,14 @@ impl Builder<'_> {
     }
 }
 
-/// A triangle with its corners sorted along an axis, prepared to be cut by split planes.
+/// A triangle with its corners sorted along an axis, prepared for cutting by split planes.
 struct SortedTriangle<const AXIS: usize> {
     corners: [Vec4; 3],
-    /// Upper bound on the rounding error of a section.
+    /// Upper bound on the rounding error of a computed section.
     slack: Vec4,
 }
 
-/// Bounding box of the line segment in which a split plane cuts a triangle.
+/// Returns the bounding box of the line segment in which a split plane cuts a triangle.
 struct Section {
     at: f32,
     min: Vec4,
@@ -218,13 +221,14 @@ impl<const AXIS: usize> SortedTriangle<AXIS> {
         let (a, b) = sort(a, b);
         let most = a.abs().max(b.abs()).max(c.abs());
         // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis. Its error is at
-        // most 5 units in the last place of q - p, which is at most twice the largest coordinate,
-        // and one of the sum; a unit is half of epsilon. The rest covers underflow.
+        // most 5 units in the last place of q - p, plus one unit of the sum. The difference q - p
+        // is at most twice the largest coordinate, and a unit is half of epsilon. The remaining
+        // term covers underflow.
         SortedTriangle { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
-    /// Section at a coordinate along the axis. Outside the triangle, it is the first or last
-    /// corner.
+    /// Returns the section at a coordinate along the axis. Outside the triangle, the section is the
+    /// first or last corner.
     #[inline(always)]
     fn section(&self, at: f32) -> Section {
         let [a, b, c] = self.corners;
@@ -239,8 +243,8 @@ impl<const AXIS: usize> SortedTriangle<AXIS> {
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
-    /// Bounding box of the part of a reference between two sections; empty if there is no such
-    /// part.
+    /// Returns the bounding box of the part of a reference between two sections. The box is empty
+    /// if there is no such part.
     #[inline(always)]
     fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
         let middle = self.corners[1];
@@ -251,12 +255,12 @@ impl<const AXIS: usize> SortedTriangle<AXIS> {
         let across = BVec4A::new(AXIS == 0, AXIS == 1, AXIS == 2, false);
         let low = Vec4::select(across, Vec4::splat(from.at), r.min);
         let high = Vec4::select(across, Vec4::splat(to.at), r.max);
-        // The fourth lane, with the number of the primitive, is not changed: it is larger than any
-        // slack.
+        // The fourth lane, which holds the number of the primitive, does not change: it is larger
+        // than any slack.
         Reference { min: min.max(low), max: max.min(high) }
     }
 
-    /// Parts of a reference on both sides of a plane.
+    /// Returns the parts of a reference on both sides of a plane.
     fn halves(&self, at: f32, r: &Reference) -> [Reference; 2] {
         let [from, middle, to] = [r.min[AXIS], at, r.max[AXIS]].map(|x| self.section(x));
         [self.between(&from, &middle, r), self.between(&middle, &to, r)]
@@ -269,8 +273,8 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::{Random, rounds};
 
-    /// Checks that random points of a triangle lie in the box of the half on their side, for any
-    /// triangle and reference box.
+    /// Checks that random points of a triangle lie in the box of the half on their side of the
+    /// plane, for any triangle and any reference box.
     fn check<const AXIS: usize>(random: &mut Random, corners: [Vec3; 3], within: Aabb) -> usize {
         let r = Reference::new(within, 7);
         let (low, high) = (within.min[AXIS], within.max[AXIS]);
@@ -285,7 +289,8 @@ mod tests {
             let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
             let [a, b, c] = corners.map(|p| p.as_dvec3());
             let p = a * (1.0 - u - v) + b * u + c * v;
-            // Rounding error of the point itself; the error of a section is far greater.
+            // This is the rounding error of the point itself. The error of a section is far
+            // greater.
             let slack = 1e-14 * (a.abs().max(b.abs()).max(c.abs())).max_element();
             let is_in =
                 |b: Aabb, slack: f64| (p.cmpge(b.min.as_dvec3() - slack) & p.cmple(b.max.as_dvec3() + slack)).all();
@@ -305,7 +310,7 @@ mod tests {
         for round in 0..rounds(20_000) {
             let scale = [1.0, 1e-30, 1e30, 1e-5][round % 4];
             let offset = [0.0, 1e4, 0.0, 3.0][round % 4] * random.point();
-            // Slivers, flat triangles, and corners at the same height.
+            // Test slivers, flat triangles, and triangles with several corners at the same height.
             let mut corners = [(); 3].map(|()| scale * (random.point() + offset));
             match random.below(4) {
                 0 => corners[2] = corners[0].midpoint(corners[1]) + 1e-6 * scale * random.point(),

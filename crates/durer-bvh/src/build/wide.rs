@@ -1,11 +1,13 @@
-//! Collapses a binary tree into nodes with eight children, at minimal cost by the surface area
+//! Collapses a binary tree into nodes with eight children, with minimal cost by the surface area
 //! heuristic.
 //!
-//! The cost C(n, i) of a subtree n as a forest of at most i roots follows from its children l and
-//! r:
+//! The cost C(n, i) of turning a subtree n into a forest of at most i roots is computed from the
+//! costs of its children l and r:
 //!
-//!   C(n, 1) = leaf(n), or A(n) + M + min over k of C(l, k) + C(r, 8 - k), if less without M,
+//!   C(n, 1) = leaf(n) or A(n) + M + min over k of C(l, k) + C(r, 8 - k),
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
+//!
+//! C(n, 1) has the second value if that value without M is less than leaf(n).
 //!
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
 //! Wide BVHs*, HPG 2017.
@@ -22,7 +24,7 @@ use glam::Vec3A;
 /// Number of references above which subtrees are processed in parallel.
 const PARALLEL: usize = 4096;
 
-/// Plan for collapsing a binary tree to eight children per node: the cheapest choice for each
+/// Plan for collapsing a binary tree into nodes with eight children: the cheapest choice for each
 /// binary node, and the total cost.
 pub struct CollapsePlan {
     plans: Vec<Plan>,
@@ -48,18 +50,18 @@ pub fn collapse(tree: &binary::BinaryTree, numbers: &[u32], plans: CollapsePlan)
     let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
     let count = cuts.above + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
     let mut all = SubtreeNodes { nodes: vec_on_large_pages(count), order: vec_on_large_pages(writer.node(0).count()) };
-    // A tree of one leaf still needs a node.
+    // A tree that consists of one leaf still needs a node.
     all.nodes.push(WideNode::EMPTY);
     writer.fill(&mut all, 0, 0, &mut subtrees.iter());
     (all.nodes, all.order)
 }
 
-/// Costs of a subtree as a forest of at most 1, 2, ..., 7 roots.
+/// Costs of a subtree when it becomes a forest of at most 1, 2, ..., 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-/// Cheapest way to collapse the subtree of a binary node, for any number of roots. Bit 0 is set if
-/// the subtree becomes a leaf. The three bits from bit 3 i on are the number of roots in the left
-/// child if the subtree has at most i roots, or 0 if fewer roots cost no more.
+/// Cheapest way to collapse the subtree of a binary node, for each number of roots. Bit 0 is set if
+/// the subtree becomes a leaf. The three bits starting at bit 3 i hold the number of roots in the
+/// left child if the subtree has at most i roots. They are 0 if fewer roots do not cost more.
 #[derive(Clone, Copy, Default)]
 struct Plan(u32);
 
@@ -77,8 +79,8 @@ impl Plan {
     }
 }
 
-/// Minimal cost of two children's forests with `roots` roots in total, and the number of roots in
-/// the left child.
+/// Returns the minimal cost of two children's forests with `roots` roots in total, and the number
+/// of roots in the left child.
 #[inline(always)]
 fn split_roots(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
@@ -90,11 +92,11 @@ fn split_roots(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     best
 }
 
-/// Parameters of the cost function by which a binary tree is collapsed.
+/// Parameters of the cost function that decides how a binary tree is collapsed.
 struct CostParameters<'a> {
-    /// Factor for sizes before areas are computed.
+    /// Factor by which sizes are multiplied before areas are computed.
     scale: f32,
-    /// Cost of a node's memory.
+    /// Cost of the memory of a node.
     node_cost: f32,
     settings: &'a BuildSettings,
 }
@@ -136,29 +138,29 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &CostParameter
     costs
 }
 
-/// Writer of wide nodes from a binary tree and its [`CollapsePlan`].
+/// Writes wide nodes, given a binary tree and its [`CollapsePlan`].
 struct NodeWriter<'a> {
     tree: &'a binary::BinaryTree,
     numbers: &'a [u32],
     plans: Vec<Plan>,
 }
 
-/// Finished part of the wide tree: a node, all nodes below it, and the primitives of their leaves.
-/// Offsets and positions count from 0.
+/// A finished part of the wide tree: a node, all nodes below it, and the primitives in their
+/// leaves. Its offsets and positions start at 0.
 struct SubtreeNodes {
     nodes: Vec<WideNode>,
     order: Vec<u32>,
 }
 
-/// The up to eight binary nodes that become the children of one wide node.
+/// The binary nodes, at most eight, that become the children of one wide node.
 #[derive(Default)]
 struct Children {
     list: [usize; WIDTH],
     count: usize,
 }
 
-/// Binary nodes at which the tree is divided into subtrees that are collapsed in parallel, and the
-/// number of wide nodes above them.
+/// Binary nodes at which the tree is divided into subtrees for parallel work, and the number of
+/// wide nodes above them.
 #[derive(Default)]
 struct CutPoints {
     above: usize,
@@ -180,7 +182,7 @@ impl NodeWriter<'_> {
         children
     }
 
-    /// Adds the best forest of a subtree with at most `roots` roots.
+    /// Adds the cheapest forest of a subtree with at most `roots` roots.
     fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
         while roots > 1 && self.plans[i].left(roots) == 0 {
             roots -= 1;
@@ -199,8 +201,8 @@ impl NodeWriter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds the topmost nodes with too few references for further parallel work, in the order of
-    /// [`NodeWriter::fill`].
+    /// Finds the topmost nodes that have too few references to be divided further for parallel
+    /// work, in the order of [`NodeWriter::fill`].
     fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {
             return cuts.below.push(i);
@@ -220,8 +222,8 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills in a wide node from a binary one, and adds all nodes below it. Subtrees are taken from
-    /// `ready` as long as it has any.
+    /// Fills in the wide node for a binary node, and adds all nodes below it. Subtrees are taken
+    /// from `ready` until it is empty.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
             && let Some(subtree) = ready.next()
@@ -234,11 +236,11 @@ impl NodeWriter<'_> {
         }
     }
 
-    /// Fills in a wide node for a binary one. Returns the position that is reserved for its inner
-    /// children, and their binary nodes.
+    /// Fills in the wide node that replaces a binary node. Returns the position reserved for its
+    /// inner children, and the binary nodes of these children.
     ///
-    /// Data that a ray is likely to need together is stored together: first the leaves of a node,
-    /// then its inner children side by side, then the nodes below each of them.
+    /// Data that a ray is likely to need together is stored together. The leaves of a node come
+    /// first, then its inner children side by side, then the nodes below each of those children.
     fn wide(&self, subtree: &mut SubtreeNodes, number: usize, i: usize) -> (usize, Children) {
         let children = self.open(i);
         let list = &children.list[..children.count];
@@ -276,7 +278,7 @@ impl NodeWriter<'_> {
             }
         }
         if self.tree.has_splits {
-            // Parts of a split primitive that are in the same leaf again count only once.
+            // If several parts of a split primitive are in the same leaf, they count only once.
             items[..count].sort_unstable();
             let mut different = 1;
             for i in 1..count {
@@ -296,7 +298,7 @@ impl NodeWriter<'_> {
 impl SubtreeNodes {
     /// Copies the root of a subtree to position `number`, and appends its other nodes.
     fn append(&mut self, number: usize, other: &SubtreeNodes) {
-        // Checks that the offset of the last node is in range.
+        // Checks that the offset of the last node is within the allowed range.
         node::node_offset(self.nodes.len() + other.nodes.len() - 2);
         let (nodes, items) = (node::node_offset(self.nodes.len() - 1), self.order.len() as u32);
         let moved = |node: &WideNode| {
@@ -314,13 +316,13 @@ impl SubtreeNodes {
     }
 }
 
-/// Value of [`WideNode::from_last`] for children sorted along an axis, from the areas of the first
-/// and the last.
+/// Returns the value of [`WideNode::from_last`] for children sorted along an axis, given the areas
+/// of the first and last child.
 ///
-/// Closest-hit rays visit children from near to far. Any-hit rays visit them from far to near,
-/// since a ray usually starts on a surface, which then is the nearest geometry. If the farthest box
-/// is much smaller than the nearest one, a hit there is less likely, and the order is from near to
-/// far.
+/// Closest-hit rays visit children from near to far. Any-hit rays visit them from far to near. The
+/// reason is that a ray usually starts on a surface, and this surface is then the nearest geometry.
+/// If the farthest box is much smaller than the nearest one, a hit there is less likely, and
+/// any-hit rays also go from near to far.
 fn reversed_octants(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
@@ -329,10 +331,11 @@ fn reversed_octants(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     [negative, any & 255]
 }
 
-/// Value of [`WideNode::from_last`], and a slot for each child.
+/// Returns the value of [`WideNode::from_last`] and a slot for each child.
 ///
-/// Children are sorted along the axis that separates them best. Every ray visits two separated
-/// children in the right order, and the larger they are, the more likely it is to hit both.
+/// Children are sorted along the axis that separates them best. Every ray visits two children in
+/// the right order if they are separated along that axis. The larger the two are, the more likely a
+/// ray is to hit both.
 fn child_slots(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
@@ -346,7 +349,7 @@ fn child_slots(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
         }
     }
     let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
-    // Ties keep the order of the children.
+    // If two axes are equally good, the children keep their order.
     let mut slots = [0; WIDTH];
     for (i, a) in bounds.iter().enumerate() {
         let center = a.center()[axis];
@@ -367,8 +370,8 @@ mod tests {
     use super::*;
 
     /// If two children are separated along an axis, closest-hit rays visit the nearer one first.
-    /// Any-hit rays visit the farther one first, unless that is less than half as large as the
-    /// nearer one.
+    /// Any-hit rays visit the farther one first, unless it is less than half as large as the nearer
+    /// one.
     #[test]
     fn children_are_in_traversal_order() {
         let child = |axis: usize, at: f32, size: f32| {
@@ -376,7 +379,8 @@ mod tests {
             (min[axis], max[axis]) = (at, at + size);
             Aabb { min: min.into(), max: max.into() }
         };
-        // Sizes of the lower and upper child, and flags if either is small compared to the other.
+        // Returns the sizes of the lower and upper child, and a flag for each that is true if it is
+        // small compared to the other.
         let pairs =
             [(1.0, 1.0, [false; 2]), (1.0, 0.9, [false; 2]), (0.5, 1.0, [true, false]), (1.0, 0.5, [false, true])];
         for (axis, (lower, upper, small)) in (0..3).flat_map(|axis| pairs.map(|pair| (axis, pair))) {

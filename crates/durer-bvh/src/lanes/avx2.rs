@@ -8,8 +8,8 @@ use crate::node::WIDTH;
 use std::arch::asm;
 use std::arch::x86_64::*;
 
-/// SIMD level AVX2. A value proves that the processor supports AVX2, FMA, BMI 1 and 2, LZCNT, and
-/// POPCNT.
+/// The SIMD level for AVX2. A value of this type proves that the processor supports AVX2, FMA, BMI
+/// 1 and 2, LZCNT, and POPCNT.
 #[derive(Clone, Copy)]
 pub struct Avx2(());
 
@@ -30,17 +30,17 @@ pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
 }
 
-/// Wraps unsafe instructions that share one safety argument.
+/// Wraps unsafe instructions that share the same safety argument.
 macro_rules! proven {
     ($($code:tt)*) => {
-        // SAFETY: a value of the type proves that the processor has the instructions, and
+        // SAFETY: a value of the type proves that the processor supports the instructions, and
         // references are valid.
         unsafe { $($code)* }
     };
 }
 pub(super) use proven;
 
-/// Implements operations that are one instruction each.
+/// Implements operations that each compile to one instruction.
 macro_rules! operations {
     ($floats:ty: $($name:ident($($x:ident),+) = $instruction:ident;)*) => {$(
         #[inline(always)]
@@ -51,7 +51,7 @@ macro_rules! operations {
 }
 pub(super) use operations;
 
-/// Implements [`FloatLanes`] on eight lanes, except comparisons.
+/// Implements [`FloatLanes`] for eight lanes, except comparisons.
 macro_rules! arithmetic_of_eight {
     () => {
         $crate::lanes::avx2::operations! { __m256:
@@ -75,7 +75,7 @@ macro_rules! arithmetic_of_eight {
 }
 pub(super) use arithmetic_of_eight;
 
-/// Implements [`Lanes`] on eight lanes, except operations with masks.
+/// Implements [`Lanes`] for eight lanes, except operations that use masks.
 macro_rules! order_of_eight {
     () => {
         #[inline(always)]
@@ -164,15 +164,15 @@ pub(super) fn corners(
 ) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: by `CornerColumns::new`, the vector begins in one of the first nine rows. The
-            // caller proves that the processor has the instructions.
+            // SAFETY: `CornerColumns::new` ensures that the vector begins in one of the first nine
+            // rows. The caller must prove that the processor supports the instructions.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
-/// Minimum of eight unsigned integers.
+/// Returns the minimum of eight unsigned integers.
 #[inline(always)]
 pub(super) fn least(a: __m256i) -> u32 {
     proven! {
@@ -182,7 +182,7 @@ pub(super) fn least(a: __m256i) -> u32 {
     }
 }
 
-/// Wraps an instruction in assembly, so that the compiler neither replaces nor reorders it.
+/// Wraps an instruction as inline assembly, so that the compiler neither replaces nor reorders it.
 macro_rules! literally {
     ($name:ident = $instruction:literal) => {
         /// # Safety
@@ -206,9 +206,10 @@ macro_rules! literally {
         }
     };
 }
-// Comparisons of signed integers. With intrinsics, the compiler would first compare the last
-// operand with the one before it and would turn comparisons into masks, which takes longer. Used
-// only for the last comparison, since wrapping all of them would move vectors between registers.
+// Compares signed integers. If intrinsics were used, the compiler would first compare the last
+// operand with the one before it and would turn comparisons into masks, which takes longer. The
+// assembly is used only for the last comparison because wrapping all of them would move vectors
+// between registers.
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");
@@ -222,7 +223,7 @@ fn lanes_of(mask: u32) -> __m256i {
     }
 }
 
-/// Transposes rows to columns: pairs, then fours, then halves.
+/// Transposes rows to columns: first pairs, then groups of four, then halves.
 #[inline(always)]
 pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; WIDTH] {
     proven! {
@@ -247,8 +248,8 @@ pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; W
     }
 }
 
-/// Implements arithmetic on `f64`, one instruction each. The bracketed instructions make up
-/// `copysign`.
+/// Implements arithmetic on `f64` with one instruction per operation. The instructions in brackets
+/// implement `copysign`.
 macro_rules! doubles {
     ($doubles:ident: $($name:ident = $instruction:ident;)*
      [sqrt = $sqrt:ident; copysign = $splat:ident, $and:ident, $andnot:ident, $or:ident]) => {
@@ -275,7 +276,7 @@ macro_rules! doubles {
 }
 pub(super) use doubles;
 
-/// Four `f64` in an AVX register.
+/// Four `f64` values in an AVX register.
 #[derive(Clone, Copy)]
 pub struct FourDoubles(__m256d);
 

@@ -1,4 +1,4 @@
-//! SIMD operations with AVX-512, on eight lanes with mask registers and on sixteen lanes.
+//! SIMD operations with AVX-512, both for eight lanes with mask registers and for sixteen lanes.
 
 use super::avx2::{FourDoubles, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
 use super::operations::{FloatLanes, Kernel, Lanes, WIDE, WideLanes};
@@ -6,8 +6,8 @@ use super::stack::Stack;
 use crate::node::WIDTH;
 use std::arch::x86_64::*;
 
-/// SIMD level AVX-512. A value proves that the processor supports AVX-512 F, VL, and DQ, in
-/// addition to the AVX2 level.
+/// The SIMD level for AVX-512. A value of this type proves that the processor supports AVX-512 F,
+/// VL, and DQ, in addition to the features of the AVX2 level.
 #[derive(Clone, Copy)]
 pub struct Avx512(());
 
@@ -87,7 +87,8 @@ impl Lanes for Avx512 {
     }
 }
 
-/// Eight `f64` in an AVX-512 register. A value also proves that the processor supports AVX-512.
+/// Eight `f64` values in an AVX-512 register. A value of this type also proves that the processor
+/// supports AVX-512.
 #[derive(Clone, Copy)]
 pub struct EightDoubles(__m512d);
 
@@ -101,8 +102,8 @@ doubles! { EightDoubles:
     [sqrt = _mm512_sqrt_pd; copysign = _mm512_set1_pd, _mm512_and_pd, _mm512_andnot_pd, _mm512_or_pd]
 }
 
-/// SIMD level AVX-512 for vectors of sixteen `f32`. A value proves that the processor supports
-/// AVX-512.
+/// The SIMD level for AVX-512 on vectors of sixteen `f32`. A value of this type proves that the
+/// processor supports AVX-512.
 #[derive(Clone, Copy)]
 pub struct SixteenFloats(());
 

@@ -1,15 +1,15 @@
-//! Selection of the SIMD level, by the processor and the environment variable `DURER_SIMD`.
+//! Selects the SIMD level based on the processor and the environment variable `DURER_SIMD`.
 
 use super::operations::{Kernel, Lanes};
 use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// Instruction set that ray queries use for vectors of eight lanes. All levels give the same hits,
-/// bit for bit.
+/// Instruction set that ray queries use for vectors with eight lanes. All levels produce the same
+/// hits, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimdLevel {
-    /// Code without SIMD instructions, for any processor.
+    /// Code without SIMD instructions, which runs on any processor.
     Scalar,
     /// AVX2 and FMA, on x86-64.
     Avx2,
@@ -46,22 +46,23 @@ impl SimdLevel {
         (SimdLevel::Avx512, "avx512"),
     ];
 
-    /// Levels that this processor supports, scalar first and best last.
+    /// Returns the levels that this processor supports. The scalar level comes first, and the best
+    /// level comes last.
     pub fn available() -> impl Iterator<Item = SimdLevel> {
         Self::ALL.into_iter().map(|(level, _)| level).filter(|level| level.is_available())
     }
 
-    /// Name of the level, as `DURER_SIMD` accepts it.
+    /// Returns the name of the level, in the form that `DURER_SIMD` accepts.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(level, _)| *level == self).map_or("", |(_, name)| name)
     }
 
-    /// Returns the level named by the environment variable `DURER_SIMD`, or the best one if it is
-    /// not set.
+    /// Returns the level named by the environment variable `DURER_SIMD`, or the best level if the
+    /// variable is not set.
     ///
     /// # Errors
     ///
-    /// If the variable does not name a level that this processor supports.
+    /// Returns an error if the variable does not name a level that this processor supports.
     pub fn from_environment() -> Result<SimdLevel, UnsupportedSimdLevel> {
         let word = std::env::var("DURER_SIMD").unwrap_or_default();
         if word.is_empty() {
@@ -73,8 +74,8 @@ impl SimdLevel {
             .ok_or_else(|| UnsupportedSimdLevel { word, known: known() })
     }
 
-    /// Returns the level from [`SimdLevel::from_environment`], or the best one if the variable is
-    /// invalid. The variable is read only once.
+    /// Returns the level from [`SimdLevel::from_environment`], or the best level if the variable is
+    /// invalid. The variable is read only once per process.
     pub fn chosen() -> SimdLevel {
         static CHOSEN: OnceLock<SimdLevel> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))
@@ -101,15 +102,15 @@ impl SimdLevel {
     }
 }
 
-/// Code without SIMD operations, usually loops over arrays, that is compiled for each SIMD level,
+/// Code without SIMD operations, usually loops over arrays. It is compiled once for each SIMD level
 /// so that the compiler vectorises it with the instructions of that level. Compilers do not fuse or
-/// reorder operations on their own, so all levels give the same bits. Functions that `run` calls
-/// should be inlined into it.
+/// reorder operations on their own, so the results are the same, bit for bit, at all levels.
+/// Functions that `run` calls should be inlined into it.
 pub trait PlainKernel {
-    /// Result of the kernel.
+    /// Type of the kernel's result.
     type Output;
 
-    /// Runs the kernel. Mark it `#[inline(always)]`.
+    /// Runs the kernel. Implementations should be marked `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
@@ -131,7 +132,7 @@ impl<K: PlainKernel> Kernel for PlainAdapter<K> {
     }
 }
 
-/// A SIMD level that the processor is known to support, so that kernels can be run at it safely.
+/// A SIMD level that the processor is known to support, so that running kernels at it is safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AvailableLevel(SimdLevel);
 
@@ -140,7 +141,7 @@ impl AvailableLevel {
         AvailableLevel(SimdLevel::chosen())
     }
 
-    /// Wraps `level`, or the scalar level if the processor does not support it.
+    /// Wraps `level`. If the processor does not support it, wraps the scalar level instead.
     pub fn or_scalar(level: SimdLevel) -> Self {
         AvailableLevel(if level.is_available() { level } else { SimdLevel::Scalar })
     }
@@ -170,8 +171,8 @@ impl AvailableLevel {
     }
 }
 
-/// Runs the scalar level. Not inlined, since its stack frame would enlarge the frames of its
-/// callers.
+/// Runs a kernel at the scalar level. This function is not inlined because its stack frame would
+/// enlarge the frames of its callers.
 #[inline(never)]
 fn plain<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(scalar::Scalar)

@@ -1,9 +1,9 @@
-//! SIMD operations on eight lanes, with all unsafe code of the library.
+//! SIMD operations on eight lanes. All unsafe code of the library is in this module.
 //!
-//! [`Lanes`] lists the operations that traversal needs. Each level implements it once, and
-//! [`AvailableLevel::run`] runs a [`Kernel`] at a level. Hits depend only on operations that are
-//! never fused, so every level gives the same bits. [`FloatLanes::mul_add`] may be fused or not,
-//! but only box tests use it, and they allow for either.
+//! [`Lanes`] lists the operations that traversal needs. Each level implements these operations
+//! once, and [`AvailableLevel::run`] runs a [`Kernel`] at a level. Hits depend only on operations
+//! that are never fused, so they are the same, bit for bit, at every level. [`FloatLanes::mul_add`]
+//! may or may not be fused, but only box tests use it, and they allow for both cases.
 #![allow(unsafe_code)]
 
 #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,4 @@
-//! SIMD operations with NEON: eight lanes as two vectors of four.
+//! SIMD operations with NEON, which handle eight lanes as two vectors of four.
 
 use super::operations::{FloatLanes, Lanes};
 use super::stack::Stack;
@@ -7,15 +7,15 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::aarch64::*;
 
-/// SIMD level NEON, which every 64-bit ARM processor has.
+/// The SIMD level for NEON, which every 64-bit ARM processor supports.
 #[derive(Clone, Copy)]
 pub struct Neon;
 
-/// Eight `f32` in two NEON vectors of four.
+/// Eight `f32` values in two NEON vectors of four.
 #[derive(Clone, Copy)]
 pub struct Pair(float32x4_t, float32x4_t);
 
-/// Wraps unsafe instructions that share one safety argument.
+/// Wraps unsafe instructions that share the same safety argument.
 macro_rules! proven {
     ($($code:tt)*) => {
         // SAFETY: NEON is part of the target, and references are valid.
@@ -23,7 +23,7 @@ macro_rules! proven {
     };
 }
 
-/// Two `f64` in one NEON vector.
+/// Two `f64` values in one NEON vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(float64x2_t);
 
@@ -65,7 +65,7 @@ impl Doubles for TwoDoubles {
 #[inline(always)]
 unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     const WEIGHTS: [u32; 4] = [1, 2, 4, 8];
-    // SAFETY: as the caller guarantees.
+    // SAFETY: the caller guarantees this.
     proven! {
         let weights = vld1q_u32(WEIGHTS.as_ptr());
         vaddvq_u32(vandq_u32(a, weights)) | vaddvq_u32(vandq_u32(b, weights)) << 4

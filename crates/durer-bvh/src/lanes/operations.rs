@@ -1,4 +1,4 @@
-//! Traits that each SIMD level implements, and access to the memory of nodes, leaves, and rays.
+//! Traits that each SIMD level implements, and access to nodes, leaves, and rays in memory.
 
 use super::stack::Stack;
 use crate::math::{Doubles, Ray, Triple};
@@ -7,10 +7,10 @@ use crate::watertight::AxisOrder;
 use glam::Vec3A;
 use std::mem::offset_of;
 
-/// Arithmetic on vectors of `f32`, implemented by each SIMD level. A value of the type proves that
-/// the processor supports the level.
+/// Arithmetic on vectors of `f32`, implemented by each SIMD level. A value of the implementing type
+/// proves that the processor supports the level.
 pub(crate) trait FloatLanes: Copy {
-    /// Vector of `f32`, one in each lane.
+    /// Vector with one `f32` in each lane.
     type Floats: Copy;
 
     fn splat(self, x: f32) -> Self::Floats;
@@ -19,35 +19,35 @@ pub(crate) trait FloatLanes: Copy {
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn abs(self, a: Self::Floats) -> Self::Floats;
-    /// a * b + c, rounded once or twice.
+    /// Returns a * b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
-    /// `a` where it is less than `b`, else `b`, also if either is NaN.
+    /// Returns `a` where it is less than `b`, and `b` elsewhere, also where either is NaN.
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// `a` where it is greater than `b`, else `b`, also if either is NaN.
+    /// Returns `a` where it is greater than `b`, and `b` elsewhere, also where either is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Mask of the lanes where a <= b.
+    /// Returns a mask of the lanes where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
-    /// Mask of the lanes where a < b.
+    /// Returns a mask of the lanes where a < b.
     fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
 
-    /// Broadcasts each component of a vector to all lanes.
+    /// Returns one vector per component, with that component in all lanes.
     #[inline(always)]
     fn splat3(self, [x, y, z]: [f32; 3]) -> [Self::Floats; 3] {
         [self.splat(x), self.splat(y), self.splat(z)]
     }
 }
 
-/// Operations on vectors of eight lanes that ray queries need, implemented by each SIMD level.
+/// Operations on vectors with eight lanes that ray queries need. Each SIMD level implements them.
 pub(crate) trait Lanes: FloatLanes {
-    /// Operations on sixteen lanes.
+    /// Level for operations on sixteen lanes.
     type Wide: WideLanes;
-    /// Vector of eight `f64`.
+    /// Vector of eight `f64` values.
     type Doubles: Doubles;
-    /// Three `f64`: a vector in double precision.
+    /// Vector of three `f64` components.
     type Triple: Triple<Component = f64>;
 
     fn wide(self) -> Self::Wide;
-    /// Joins two vectors of eight lanes.
+    /// Joins two vectors with eight lanes each.
     fn join(self, halves: [Self::Floats; 2]) -> <Self::Wide as FloatLanes>::Floats;
     fn doubles(self, a: Self::Floats) -> Self::Doubles;
     /// Rounds to single precision.
@@ -56,7 +56,7 @@ pub(crate) trait Lanes: FloatLanes {
     fn splat_double(self, x: f64) -> Self::Doubles;
     fn load_doubles(self, from: &[f64; WIDTH]) -> Self::Doubles;
     fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
-    /// Mask of the lanes where a <= b.
+    /// Returns a mask of the lanes where a <= b.
     fn le_doubles(self, a: Self::Doubles, b: Self::Doubles) -> u32;
 
     /// Converts each component to double precision.
@@ -72,81 +72,84 @@ pub(crate) trait Lanes: FloatLanes {
     fn permute(self, v: Vec3A, axes: &AxisOrder) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
-    /// Loads the corners of a leaf's triangles. Lanes beyond the number of triangles are
-    /// meaningless.
+    /// Loads the corners of a leaf's triangles. Lanes beyond the number of triangles have
+    /// meaningless values.
     fn corners(self, from: &Rows, columns: CornerColumns) -> [[Self::Floats; 3]; 3];
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
-    /// Minimum by comparison as signed integers: equals [`FloatLanes::min`] if neither operand is
-    /// negative, and is negative if either is.
+    /// Returns the minimum when compared as signed integers. It equals [`FloatLanes::min`] if
+    /// neither operand is negative, and it is negative if either operand is.
     fn min_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Maximum by comparison as signed integers: equals [`FloatLanes::max`] if at least one operand
-    /// is not negative.
+    /// Returns the maximum when compared as signed integers. It equals [`FloatLanes::max`] if at
+    /// least one operand is not negative.
     fn max_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Sets all bits in the lanes where a < b, compared as signed integers, and clears the others.
+    /// Sets all bits in the lanes where a < b, compared as signed integers, and clears all bits in
+    /// the other lanes.
     fn lt_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Mask of the lanes with a sign bit.
+    /// Returns a mask of the lanes whose sign bit is set.
     fn signs(self, a: Self::Floats) -> u32;
-    /// Intersects three slab intervals with the interval `within` of the ray: returns the last
-    /// start, by [`Lanes::later`], and the first end, by [`Lanes::sooner`]. Of the slabs, pass the
-    /// one last that is loaded last.
+    /// Intersects three slab intervals with the interval `within` of the ray. Returns the last
+    /// start, computed with [`Lanes::later`], and the first end, computed with [`Lanes::sooner`].
+    /// The slab that is loaded last should be passed as the last argument.
     #[inline(always)]
     fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
         let enter = self.max_as_int(z[0], self.max_as_int(y[0], self.max_as_int(x[0], within[0])));
         let leave = self.min_as_int(z[1], self.min_as_int(y[1], self.min_as_int(x[1], within[1])));
         [enter, leave]
     }
-    /// Minimum of `a` over the lanes in which all bits of `which` are set. The last eight bits of
-    /// `a` are ignored, and in the result they are replaced by the tag of the lane. `a` must not be
-    /// negative. If there is no such lane, the result is arbitrary.
+    /// Returns the minimum of `a` over the lanes in which all bits of `which` are set. The last
+    /// eight bits of `a` are ignored. In the result, they are replaced by the tag of the lane. `a`
+    /// must not be negative. If no lane is selected, the result is arbitrary.
     fn nearest(self, a: Self::Floats, which: Self::Floats, child_tags: &[u8; WIDTH]) -> u32;
-    /// `a` in the lanes whose mask bits are set, `b` in the others. Keeps the bits.
+    /// Returns `a` in the lanes whose mask bits are set and `b` in the others. The bits of the
+    /// values do not change.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Moves lane k of vector i to lane i of vector k.
     fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
-    /// Pushes the first `count` children of the lane order `order`, each with its entry distance.
+    /// Pushes the first `count` children in the lane order `order`, each with its entry distance.
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: &[u8; WIDTH], count: u32);
-    /// Prefetches the cache line at an address, which may be invalid.
+    /// Prefetches the cache line at an address. The address may be invalid.
     fn prefetch<T>(self, at: *const T);
 }
 
 /// Number of lanes of [`Wide`].
 pub const WIDE: usize = 2 * WIDTH;
 
-/// Operations on vectors of sixteen lanes, for ray packets, implemented with one AVX-512 vector or
-/// two vectors of eight lanes.
+/// Operations on vectors with sixteen lanes, for ray packets. They use either one AVX-512 vector or
+/// two vectors with eight lanes.
 pub(crate) trait WideLanes: FloatLanes {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];
-    /// `a` in the lanes whose mask bits are set, `b` in the others. Keeps the bits.
+    /// Returns `a` in the lanes whose mask bits are set and `b` in the others. The bits of the
+    /// values do not change.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Minimum of all lanes, which must not be NaN.
+    /// Returns the minimum of all lanes, which must not be NaN.
     fn least(self, a: Self::Floats) -> f32;
-    /// Maximum of all lanes, which must not be NaN.
+    /// Returns the maximum of all lanes, which must not be NaN.
     fn greatest(self, a: Self::Floats) -> f32;
 }
 
-/// Number of rows of a leaf of triangles: nine coordinates and a number.
+/// Number of rows in a leaf of triangles: nine rows of coordinates and one row of numbers.
 pub const ROWS: usize = 10;
 
-/// Storage for the rows of a triangle leaf, long enough to load a vector from the start of any of
-/// the first nine rows.
+/// Storage for the rows of a triangle leaf. It is long enough to load a vector from the start of
+/// any of the first nine rows.
 pub type Rows = [f32; ROWS_LEN];
 
 /// Number of values in [`Rows`].
 pub const ROWS_LEN: usize = ROWS * WIDTH;
 
-/// Access to the near and far box planes, by the signs of a ray's direction, in all nodes of a
-/// tree.
+/// Access to the near and far planes of boxes in all nodes of a tree, given the signs of a ray's
+/// direction.
 pub(crate) struct NodePlanes<'a> {
     nodes: &'a [WideNode],
-    /// Addresses of the planes in the first node, by axis.
+    /// Addresses of the planes in the first node, for each axis.
     near: [*const u8; 3],
     far: [*const u8; 3],
 }
 
 impl<'a> NodePlanes<'a> {
-    /// Selects the planes for rays with negative directions along the axes whose bits are set in
-    /// `negative`.
+    /// Selects the planes for rays whose directions are negative along the axes whose bits are set
+    /// in `negative`.
     #[inline(always)]
     pub fn new(nodes: &'a [WideNode], negative: u32) -> Self {
         assert!(nodes.len() <= node::MAX_NODES);
@@ -158,19 +161,19 @@ impl<'a> NodePlanes<'a> {
         NodePlanes { nodes, near, far }
     }
 
-    /// Node at a [`node_offset`](node::node_offset).
+    /// Returns the node at a [`node_offset`](node::node_offset).
     #[inline(always)]
     pub fn at(&self, address: usize) -> NodeAccess<'a, '_> {
-        // If the offset is misaligned, rotating moves its low bits to the top, so the bounds check
-        // fails.
+        // If the offset is misaligned, the rotation moves its low bits to the top, so the bounds
+        // check fails.
         let number = address.rotate_right(node::UNITS.trailing_zeros());
         assert!(number < self.nodes.len());
         NodeAccess { sides: self, offset: address * node::UNIT, node: &self.nodes[number] }
     }
 }
 
-/// A node in a traversal, with the near and far planes of its boxes; returned by
-/// [`NodePlanes::at`].
+/// A node during traversal, with the near and far planes of its boxes. [`NodePlanes::at`] returns
+/// it.
 pub(crate) struct NodeAccess<'a, 's> {
     sides: &'s NodePlanes<'a>,
     offset: usize,
@@ -178,23 +181,23 @@ pub(crate) struct NodeAccess<'a, 's> {
 }
 
 impl<'a> NodeAccess<'a, '_> {
-    /// Planes where the ray enters along an axis.
+    /// Returns the planes at which the ray enters along an axis.
     #[inline(always)]
     pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
-        // SAFETY: the row lies in the first node, and by `NodePlanes::at` there is a node `offset`
-        // bytes further.
+        // SAFETY: the row lies in the first node, and `NodePlanes::at` ensures that there is a node
+        // `offset` bytes further.
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// Planes where the ray leaves along an axis.
+    /// Returns the planes at which the ray leaves along an axis.
     #[inline(always)]
     pub fn far(&self, axis: usize) -> &'a [f32; WIDTH] {
         // SAFETY: see above.
         unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// [Tags](WideNode::child_tags) of the node. The address is computed like those of the planes,
-    /// since the ray waits for the tags.
+    /// Returns the [tags](WideNode::child_tags) of the node. The address is computed in the same
+    /// way as the addresses of the planes because the ray has to wait for the tags.
     #[inline(always)]
     pub fn child_tags(&self) -> &'a [u8; WIDTH] {
         let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(WideNode, child_tags));
@@ -203,25 +206,25 @@ impl<'a> NodeAccess<'a, '_> {
     }
 }
 
-/// Values of a ray in memory: origin, direction, and interval.
+/// Returns the values of a ray as stored in memory: origin, direction, and interval.
 #[inline(always)]
 pub(crate) fn as_floats(ray: &Ray) -> &[f32; WIDTH] {
     const { assert!(size_of::<Ray>() == size_of::<[f32; WIDTH]>()) };
-    // SAFETY: a ray is eight numbers, in the order of their declaration.
+    // SAFETY: a ray consists of eight numbers, in the order of their declaration.
     unsafe { &*std::ptr::from_ref(ray).cast() }
 }
 
-/// Positions of the corners of a leaf's triangles in [`Rows`], with permuted axes.
+/// Positions of the corners of a leaf's triangles in [`Rows`], with the axes permuted.
 #[derive(Clone, Copy)]
 pub(crate) struct CornerColumns {
-    /// Start of the rows of the first corner, by axis.
+    /// Start of the rows of the first corner, for each axis.
     pub starts: [usize; 3],
     /// Distance between the rows of two corners.
     pub corner: usize,
 }
 
 impl CornerColumns {
-    /// Positions in a leaf of `count` triangles.
+    /// Returns the positions in a leaf with `count` triangles.
     #[inline(always)]
     pub fn new(&[x, y, z, _]: &AxisOrder, count: usize) -> Self {
         assert!(count <= WIDTH);
@@ -229,13 +232,13 @@ impl CornerColumns {
         CornerColumns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }
     }
 
-    /// Corners of one triangle.
+    /// Returns the corners of one triangle.
     #[inline(always)]
     pub fn triangle(self, from: &Rows, lane: usize) -> [Vec3A; 3] {
         assert!(lane < WIDTH);
         let CornerColumns { starts: [x, y, z], corner } = self;
-        // SAFETY: by `new` and the assertion, the last value lies in one of the first ten rows of
-        // at most eight numbers.
+        // SAFETY: because of `new` and the assertion, the last value lies in one of the first ten
+        // rows, which have at most eight numbers each.
         let at = |place: usize| unsafe { *from.get_unchecked(place + lane) };
         let (b, c) = (corner, 2 * corner);
         [
@@ -246,9 +249,10 @@ impl CornerColumns {
     }
 }
 
-/// A function that can be run at any SIMD level, such as a ray query, with its arguments as fields.
+/// A function that can run at any SIMD level, such as a ray query. Its arguments are the fields of
+/// the kernel.
 pub(crate) trait Kernel {
     type Output;
-    /// Runs the kernel. Must be inlined, so that it is compiled for the level.
+    /// Runs the kernel. It must be inlined so that it is compiled for the level.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }

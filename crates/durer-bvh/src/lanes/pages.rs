@@ -1,4 +1,4 @@
-//! Lists on large pages, and prefetching.
+//! Lists stored on large pages, and prefetching.
 
 use crate::parallel;
 
@@ -9,8 +9,8 @@ pub fn vec_on_large_pages<T>(count: usize) -> Vec<T> {
     list
 }
 
-/// Creates a list of `of(0)`, ..., `of(count - 1)` on large pages, with capacity for `more` further
-/// items. The list is filled by all threads, because the first access to each page is slow.
+/// Creates a list of `of(0)`, ..., `of(count - 1)` on large pages, with capacity for `more`
+/// additional items. All threads fill the list because the first access to each page is slow.
 pub fn parallel_vec<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
     let mut all = vec_on_large_pages(count + more);
@@ -18,7 +18,7 @@ pub fn parallel_vec<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T 
     all
 }
 
-/// Prefetches a value into the cache on x86-64; does nothing on other processors.
+/// Prefetches a value into the cache on x86-64, and does nothing on other processors.
 #[inline]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -34,15 +34,15 @@ pub fn prefetch<T>(value: &T) {
     let _ = value;
 }
 
-/// Asks the system for large pages for the uninitialised memory of `count` items, if it is large
-/// enough. This saves TLB misses, since the processor caches the addresses of only a limited number
-/// of pages.
+/// Asks the operating system for large pages for the uninitialised memory of `count` items if that
+/// memory is large enough. This avoids TLB misses because the processor caches the addresses of
+/// only a limited number of pages.
 fn large_pages<T>(list: *const T, count: usize) {
     #[cfg(target_os = "linux")]
     {
         use std::ffi::{c_int, c_void};
         unsafe extern "C" {
-            /// From the C library that `std` is linked with.
+            /// The function comes from the C library that `std` is linked with.
             fn madvise(from: *mut c_void, bytes: usize, advice: c_int) -> c_int;
         }
         /// Linux's `MADV_HUGEPAGE`.
@@ -51,8 +51,8 @@ fn large_pages<T>(list: *const T, count: usize) {
         let start = list.addr().next_multiple_of(LARGE);
         let end = (list.addr() + count * size_of::<T>()) / LARGE * LARGE;
         if start < end {
-            // Failure is harmless: memory then stays on small pages.
-            // SAFETY: this advice does not change the contents of memory.
+            // A failure is harmless: the memory then stays on small pages. SAFETY: this advice does
+            // not change the contents of memory.
             let _ = unsafe { madvise(list.with_addr(start).cast_mut().cast(), end - start, USE_LARGE_PAGES) };
         }
     }

@@ -1,4 +1,4 @@
-//! SIMD operations in scalar code, for any processor.
+//! SIMD operations implemented in scalar code, for any processor.
 
 use super::operations::{FloatLanes, Lanes};
 use super::stack::Stack;
@@ -7,14 +7,14 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::array::from_fn;
 
-/// SIMD level without SIMD instructions, for any processor.
+/// The SIMD level without SIMD instructions, for any processor.
 #[derive(Clone, Copy)]
 pub struct Scalar;
 
-/// Eight `f32` in an array.
+/// Eight `f32` values in an array.
 type F = [f32; WIDTH];
 
-/// Eight `f64` in an array.
+/// Eight `f64` values in an array.
 #[derive(Clone, Copy)]
 pub struct ScalarDoubles([f64; WIDTH]);
 

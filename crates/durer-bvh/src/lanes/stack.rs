@@ -1,9 +1,9 @@
-//! Stack of nodes to visit, each with the distance at which the ray enters it.
+//! Stack of nodes to visit, each with the distance at which the ray enters the node.
 
 use crate::node::{MAX_DEPTH, WIDTH};
 use std::mem::MaybeUninit;
 
-/// Maximum height of the stack for a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels, plus
+/// Maximum height of the stack for a tree with [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels, plus
 /// space for storing a full vector.
 const CAPACITY: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
@@ -20,11 +20,11 @@ impl StackStorage {
     }
 }
 
-/// Traversal stack of the nodes and leaves that are still to be visited, with their entry
+/// Traversal stack of the nodes and leaves that have not been visited yet, with their entry
 /// distances.
 pub struct Stack<'a> {
-    // Separate from the height, since otherwise an empty stack would be copied from a constant for
-    // every ray.
+    // The memory is separate from the height because otherwise an empty stack would be copied from
+    // a constant for every ray.
     storage: &'a mut StackStorage,
     height: usize,
 }
@@ -51,12 +51,12 @@ impl<'a> Stack<'a> {
     pub fn pop_near(&mut self) -> Option<(u32, f32)> {
         self.height = self.height.checked_sub(1)?;
         let (children, near, height) = self.all();
-        // SAFETY: everything below the previous height was written.
+        // SAFETY: all entries below the previous height have been written.
         Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
-    /// Pops children until one has an entry distance of at most `far`, and returns it. There must
-    /// be one.
+    /// Pops children until the entry distance of one is at most `far`, and returns that child. Such
+    /// a child must exist.
     #[inline(always)]
     pub fn pop_until(&mut self, far: f32) -> u32 {
         loop {
@@ -72,22 +72,22 @@ impl<'a> Stack<'a> {
         self.height = 0;
     }
 
-    /// Returns the topmost child and removes it if `wanted`. There must be one.
+    /// Returns the topmost child and removes it if `wanted` is true. The stack must not be empty.
     #[inline(always)]
     pub fn pop_if(&mut self, wanted: bool) -> u32 {
         assert!(self.height > 0);
         self.height -= usize::from(wanted);
-        // SAFETY: everything below the previous height was written.
+        // SAFETY: all entries below the previous height have been written.
         unsafe { *self.storage.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
     }
 
-    /// Pointers to the top of the stack, with space for a full vector. Call [`Stack::grow`] after
-    /// writing to it.
+    /// Returns pointers to the top of the stack, where there is space for a full vector. The caller
+    /// must call [`Stack::grow`] after writing to them.
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
         assert!(self.height <= CAPACITY - WIDTH);
         let (children, near, height) = self.all();
-        // SAFETY: there is space for a vector above the height.
+        // SAFETY: there is space for a vector above the current height.
         unsafe { (children.add(height), near.add(height)) }
     }
 
@@ -101,7 +101,7 @@ impl<'a> Stack<'a> {
         self.height += count as usize;
     }
 
-    /// Pointers to the bottom child and distance, and the height.
+    /// Returns pointers to the bottom child and its distance, and the height.
     #[inline(always)]
     pub(super) fn all(&mut self) -> (*mut u32, *mut f32, usize) {
         (self.storage.children.as_mut_ptr().cast::<u32>(), self.storage.near.as_mut_ptr().cast::<f32>(), self.height)

@@ -1,4 +1,4 @@
-//! Tests that all SIMD levels give the same bits for any numbers.
+//! Tests that all SIMD levels give the same result, bit for bit, for any numbers.
 
 use super::*;
 use crate::math::random::{Random, rounds};
@@ -7,7 +7,7 @@ use crate::watertight::AxisOrder;
 use crate::watertight::axis_order_for;
 use glam::Vec3A;
 
-/// Special values of arithmetic: zeros, infinities, NaN, and very large and small numbers.
+/// Special values for arithmetic: zeros, infinities, NaN, and very large and very small numbers.
 const SPECIAL: [f32; 14] = [
     0.0,
     -0.0,
@@ -28,8 +28,8 @@ const SPECIAL: [f32; 14] = [
 fn number(random: &mut Random) -> f32 {
     match random.below(4) {
         0 => SPECIAL[random.below(SPECIAL.len())],
-        // No signaling NaN: on ARM the compiler turns `if a > b { a } else { b }` into one
-        // instruction that passes them through.
+        // Signaling NaNs are left out. On ARM, the compiler turns `if a > b { a } else { b }` into
+        // one instruction that passes them through.
         1 => match f32::from_bits(random.bits() as u32) {
             x if x.is_nan() => f32::NAN,
             x => x,
@@ -62,7 +62,7 @@ impl Input {
 }
 
 /// Kernel that runs all operations except [`FloatLanes::mul_add`] and returns the bits of the
-/// results. NaN always gives the same bits.
+/// results. Every NaN is replaced by a NaN with fixed bits.
 struct AllOperations<'a>(&'a Input);
 
 /// Number of vectors computed for each input: arithmetic, double precision, two joined halves,
@@ -84,7 +84,7 @@ impl Kernel for AllOperations<'_> {
             let mut stack = Stack::new(&mut storage);
             lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
             let (_, near, height) = stack.all();
-            // SAFETY: everything below the height was written.
+            // SAFETY: all entries below the height have been written.
             (0..height).for_each(|i| results.push(number(unsafe { *near.add(i) })));
         };
         record(lanes.add(a, b), WIDTH);
@@ -126,7 +126,7 @@ impl Kernel for AllOperations<'_> {
         let turned = lanes.permute(Vec3A::from_slice(&floats[0]), turn);
         results.extend(turned.to_array().map(number));
         results.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
-        // The lane is arbitrary if none is hit.
+        // If no lane is hit, the lane is arbitrary.
         let (enter, leave) = (lanes.max_as_int(a, lanes.splat(0.0)), b);
         let before = lanes.lt_as_int(enter, leave);
         let (hits, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
@@ -142,7 +142,7 @@ impl Kernel for AllOperations<'_> {
     }
 }
 
-/// Results of all operations on sixteen lanes.
+/// Returns the results of all operations on sixteen lanes.
 #[inline(always)]
 fn wide<W: WideLanes>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
     let join =
@@ -162,7 +162,7 @@ fn wide<W: WideLanes>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f3
     let ordered = lanes.max(a, lanes.splat(f32::MIN));
     let masks = [lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)].map(|mask| mask as f32);
     let [p, q, r, s] = masks;
-    // Zeros of either sign compare equal.
+    // Zeros of either sign compare as equal.
     let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
     let mut results = [0.0; 8 * WIDE + 6];
     let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
@@ -170,7 +170,7 @@ fn wide<W: WideLanes>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f3
     results
 }
 
-/// Tests 10^6 lanes; 10^9 in the long run.
+/// Tests 10^6 lanes, or 10^9 lanes in the long run.
 #[test]
 fn every_level_gives_the_same_bits() {
     let mut random = Random(31);

@@ -1,8 +1,8 @@
-//! SIMD operations with WebAssembly's `simd128`: eight lanes as two vectors of four.
+//! SIMD operations with WebAssembly's `simd128`, which handle eight lanes as two vectors of four.
 //!
 //! The compiler option `-C target-feature=+simd128` selects this level. There is no check at run
-//! time, since a module either contains the instructions or not. Relaxed SIMD is not used, because
-//! its results can differ between machines.
+//! time because a module either contains the instructions or does not. Relaxed SIMD is not used,
+//! because its results can differ between machines.
 
 use super::operations::{CornerColumns, FloatLanes, Lanes, Rows};
 use super::stack::Stack;
@@ -11,23 +11,23 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::wasm32::*;
 
-/// SIMD level `simd128`. The type exists only if the target supports it.
+/// The SIMD level for `simd128`. The type exists only if the compilation target supports it.
 #[derive(Clone, Copy)]
 pub struct Simd128;
 
-/// Eight `f32` in two vectors of four.
+/// Eight `f32` values in two vectors of four.
 #[derive(Clone, Copy)]
 pub struct Pair(v128, v128);
 
-/// Loads a vector from an array, beginning at an index. Alignment is not required.
+/// Loads a vector from an array, starting at an index. The address does not have to be aligned.
 macro_rules! load {
     ($from:expr, $at:expr) => {
-        // SAFETY: callers pass an index from which the array has at least sixteen bytes.
+        // SAFETY: callers pass an index from which at least sixteen bytes of the array remain.
         unsafe { v128_load($from.as_ptr().add($at).cast()) }
     };
 }
 
-/// Stores a vector into an array, beginning at an index.
+/// Stores a vector into an array, starting at an index.
 macro_rules! store {
     ($to:expr, $at:expr, $vector:expr) => {
         // SAFETY: see above.
@@ -35,7 +35,7 @@ macro_rules! store {
     };
 }
 
-/// Two `f64` in one 128-bit vector.
+/// Two `f64` values in one 128-bit vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(v128);
 
@@ -57,7 +57,7 @@ impl Doubles for TwoDoubles {
         TwoDoubles(f64x2_div(self.0, other.0))
     }
     // `pmin(x, y)` is `if y < x { y } else { x }`, and `pmax(x, y)` is `if x < y { y } else { x }`.
-    // With swapped operands they match the trait, also for NaN and zeros.
+    // With swapped operands they do what the trait requires, also for NaN and zeros.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         TwoDoubles(f64x2_pmin(other.0, self.0))
@@ -76,7 +76,7 @@ impl Doubles for TwoDoubles {
     }
 }
 
-/// Implements operations on both halves, one instruction each.
+/// Implements operations on both halves with one instruction each.
 macro_rules! operations {
     ($($name:ident($($x:ident),+) = $instruction:ident($($y:ident),+);)*) => {$(
         #[inline(always)]
@@ -86,7 +86,7 @@ macro_rules! operations {
     )*};
 }
 
-/// Mask of the sign bits of all lanes.
+/// Returns a mask of the sign bits of all lanes.
 #[inline(always)]
 fn bits(low: v128, high: v128) -> u32 {
     u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
@@ -195,8 +195,8 @@ impl Lanes for Simd128 {
     }
     #[inline(always)]
     fn corners(self, from: &Rows, CornerColumns { starts, corner }: CornerColumns) -> [[Pair; 3]; 3] {
-        // By `CornerColumns::new`, each row begins in one of the first nine, so eight numbers
-        // follow.
+        // `CornerColumns::new` ensures that each row begins in one of the first nine rows, so eight
+        // numbers follow.
         std::array::from_fn(|k| {
             starts.map(|start| Pair(load!(from, k * corner + start), load!(from, k * corner + start + 4)))
         })
@@ -233,7 +233,7 @@ impl Lanes for Simd128 {
     }
     #[inline(always)]
     fn transpose(self, [a, b, c, d, e, f, g, h]: [Pair; WIDTH]) -> [Pair; WIDTH] {
-        // Transpose four blocks of four by four, and swap two of them.
+        // Transpose four blocks of four by four values, and swap two of the blocks.
         let ([a0, b0, c0, d0], [e0, f0, g0, h0]) = (block([a.0, b.0, c.0, d.0]), block([a.1, b.1, c.1, d.1]));
         let ([a1, b1, c1, d1], [e1, f1, g1, h1]) = (block([e.0, f.0, g.0, h.0]), block([e.1, f.1, g.1, h.1]));
         [Pair(a0, a1), Pair(b0, b1), Pair(c0, c1), Pair(d0, d1), Pair(e0, e1), Pair(f0, f1), Pair(g0, g1), Pair(h0, h1)]
@@ -250,7 +250,7 @@ impl Lanes for Simd128 {
                 to_near.add(i).write(near[lane]);
             }
         }
-        // SAFETY: `count` entries were written.
+        // SAFETY: `count` entries have been written.
         unsafe { stack.grow(count) };
     }
     #[inline(always)]
@@ -265,7 +265,7 @@ fn u16x8_load_extend(from: &[u8; WIDTH]) -> v128 {
     unsafe { u16x8_load_extend_u8x8(from.as_ptr()) }
 }
 
-/// Transposes four by four.
+/// Transposes four vectors of four lanes.
 #[inline(always)]
 fn block([a, b, c, d]: [v128; 4]) -> [v128; 4] {
     let (ab, cd) = (i32x4_shuffle::<0, 4, 1, 5>(a, b), i32x4_shuffle::<0, 4, 1, 5>(c, d));

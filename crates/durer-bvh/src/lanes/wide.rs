@@ -1,9 +1,9 @@
-//! Sixteen lanes for ray packets: one AVX-512 vector, or two vectors of eight lanes.
+//! Sixteen lanes for ray packets, stored in one AVX-512 vector or in two vectors with eight lanes.
 
 use super::operations::{FloatLanes, Lanes, WIDE, WideLanes};
 use crate::node::WIDTH;
 
-/// Sixteen lanes as two vectors of eight, for SIMD levels without longer vectors.
+/// Sixteen lanes stored as two vectors with eight lanes, for SIMD levels without longer vectors.
 #[derive(Clone, Copy)]
 pub struct TwoVectors<L>(pub L);
 

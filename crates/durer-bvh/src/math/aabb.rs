@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-/// An axis-aligned bounding box. It is empty if `min` exceeds `max` along any axis.
+/// An axis-aligned bounding box. The box is empty if `min` exceeds `max` along any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Minimum corner.
@@ -10,27 +10,27 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Box that contains no point.
+    /// A box that contains no point.
     pub const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Smallest box around some points.
+    /// Returns the smallest box that contains some points.
     pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Aabb::EMPTY, Aabb::union_point)
     }
 
-    /// Smallest box around this one and a point.
+    /// Returns the smallest box that contains this box and a point.
     #[inline]
     pub fn union_point(self, point: Vec3) -> Self {
         Aabb { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Smallest box around both boxes.
+    /// Returns the smallest box that contains both boxes.
     #[inline]
     pub fn union(self, other: Aabb) -> Self {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Largest absolute value among the coordinates of the corners.
+    /// Returns the largest absolute value among the coordinates of the corners.
     #[inline]
     pub fn max_abs_coordinate(&self) -> f32 {
         self.min.abs().max(self.max.abs()).max_element()
@@ -48,34 +48,34 @@ impl Aabb {
         !self.min.cmple(self.max).all()
     }
 
-    /// Edge lengths; zero for an empty box.
+    /// Returns the edge lengths, which are zero for an empty box.
     #[inline]
     pub fn size(&self) -> Vec3 {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
-    /// Centre of the box.
+    /// Returns the centre of the box.
     #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Returns true if the box is far from the origin for its size, so that single precision is
-    /// coarse in it: the largest absolute coordinate of the centre exceeds 256 times the longest
-    /// edge.
+    /// Returns true if the box is so far from the origin, relative to its size, that single
+    /// precision is coarse in it. This is the case if the largest absolute coordinate of the centre
+    /// exceeds 256 times the longest edge.
     #[inline]
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()
     }
 
-    /// Half the surface area, for the surface area heuristic.
+    /// Returns half the surface area, for the surface area heuristic.
     #[inline]
     pub fn half_area(&self) -> f32 {
         let d = self.size();
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 
-    /// The eight corners.
+    /// Returns the eight corners.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
             let pick = |axis: usize| if i >> axis & 1 == 1 { self.max[axis] } else { self.min[axis] };
@@ -83,10 +83,11 @@ impl Aabb {
         })
     }
 
-    /// Interval of `t` in which `origin + t * dir` lies in the closed box, if any.
+    /// Returns the interval of `t` in which `origin + t * dir` lies in the closed box, if there is
+    /// one.
     ///
-    /// The sign of the direction selects the near plane of each slab. A ray that lies in a face of
-    /// the box is inside.
+    /// The sign of the direction determines which plane of each slab is the near one. A ray that
+    /// lies in a face of the box counts as inside.
     pub fn clip(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in 0..3 {

@@ -1,18 +1,18 @@
-//! Double-precision arithmetic on one number or on several lanes.
+//! Double-precision arithmetic on one number or on several SIMD lanes.
 
-/// Arithmetic on an `f64`, or on several in SIMD lanes, so that tests of one ray and of several
-/// share their code.
+/// Arithmetic on one `f64`, or on several in SIMD lanes, so that the tests for one ray and for
+/// several rays share their code.
 pub(crate) trait Doubles: Copy {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// Returns `self` if it is less than `other`, else `other`, also if either is NaN.
+    /// Returns `self` if it is less than `other`, and `other` otherwise, also if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// Returns `self` if it is greater than `other`, else `other`, also if either is NaN.
+    /// Returns `self` if it is greater than `other`, and `other` otherwise, also if either is NaN.
     fn max(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
-    /// Magnitude of `self` with the sign of `sign`.
+    /// Returns the magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
 }
 
@@ -22,9 +22,9 @@ pub(crate) trait Triple: Doubles {
     type Component: Doubles;
 
     fn z(self) -> Self::Component;
-    /// Sum of the components, in the order (x + y) + z.
+    /// Returns the sum of the components in the order (x + y) + z.
     fn sum(self) -> Self::Component;
-    /// Components rotated to (y, z, x).
+    /// Returns the components rotated to (y, z, x).
     fn yzx(self) -> Self;
 
     #[inline(always)]

@@ -1,24 +1,25 @@
-//! Transcendental functions that give the same bits on every platform.
+//! Transcendental functions that return the same bits on every platform.
 //!
-//! The functions of `std` use the platform's libm, whose rounding differs between systems. These
-//! functions use the pure-Rust `libm` or plain arithmetic, so that an image has the same bits
+//! The functions of `std` use the platform's math library, whose rounding differs between systems.
+//! These functions use the pure-Rust `libm` or plain arithmetic, so images have the same bits
 //! everywhere. `clippy.toml` forbids the functions of `std`.
 
 use std::hint::select_unpredictable;
 
-/// Sine of an angle in radians.
+/// Returns the sine of an angle in radians.
 #[inline]
 pub fn sin(x: f32) -> f32 {
     libm::sinf(x)
 }
 
-/// Cosine of an angle in radians.
+/// Returns the cosine of an angle in radians.
 #[inline]
 pub fn cos(x: f32) -> f32 {
     libm::cosf(x)
 }
 
-/// Sine and cosine of an angle in degrees, in double precision; exact at multiples of 90 degrees.
+/// Returns the sine and cosine of an angle in degrees, in double precision. They are exact at
+/// multiples of 90 degrees.
 #[inline]
 pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     match degrees % 360.0 {
@@ -33,23 +34,24 @@ pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of an angle in turns, for angles below 2^20, with an error of about one
-/// rounding. Exact at multiples of a quarter turn.
+/// Returns the sine and cosine of an angle in turns, for angles below 2^20. The error is about one
+/// rounding. The results are exact at multiples of a quarter turn.
 ///
-/// The nearest quarter turn is subtracted. The remaining angle is at most an eighth of a turn,
-/// where short series suffice.
+/// The nearest multiple of a quarter turn is subtracted. The remaining angle is at most an eighth
+/// of a turn, where short series are accurate enough.
 #[inline]
 pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     const SINE: [f64; 5] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5_040.0, 1.0 / 362_880.0];
     const COSINE: [f64; 6] = [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0];
-    // Adding this removes the fraction. The last two bits of the sum count the quarter turns.
+    // Adding this number removes the fraction. The last two bits of the sum count the quarter
+    // turns.
     const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
     let quarters = 4.0 * turn + WHOLE;
     let x = std::f64::consts::TAU * (f64::from(turn) - 0.25 * f64::from(quarters - WHOLE));
     let x2 = x * x;
     let (sin, cos) = ((x * polynomial(x2, &SINE)) as f32, polynomial(x2, &COSINE) as f32);
-    // Branchless, since all quarters are equally likely. Each quarter has its own signs, and odd
-    // quarters swap sine and cosine.
+    // This code has no branches because all quarters are equally likely. Each quarter has its own
+    // signs, and odd quarters swap sine and cosine.
     let quarter = quarters.to_bits();
     let signed = |x: f32, minus: u32| f32::from_bits(x.to_bits() ^ (minus & 2) << 30);
     let odd = quarter & 1 != 0;
@@ -57,18 +59,19 @@ pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     (signed(first, quarter), signed(second, quarter.wrapping_add(1)))
 }
 
-/// Angle of the point (x, y) in turns, from -1/2 to 1/2; 0 for the origin. Both coordinates must be
-/// finite.
+/// Returns the angle of the point (x, y) in turns, from -1/2 to 1/2. It is 0 for the origin. Both
+/// coordinates must be finite.
 #[inline]
 pub fn atan2_turn(y: f32, x: f32) -> f32 {
     atan2_turn_f64(y.into(), x.into()) as f32
 }
 
-/// Double-precision [`atan2_turn`]: relative error at most 2e-8, absolute error at most 2e-9 turns.
+/// Computes [`atan2_turn`] in double precision, with a relative error of at most 2e-8 and an
+/// absolute error of at most 2e-9 turns.
 #[inline]
 pub fn atan2_turn_f64(y: f64, x: f64) -> f64 {
-    /// Coefficients of atan(t) / (2 pi t) in t^2 on [0, 1], interpolated at Chebyshev nodes; error
-    /// at most 2e-9 turns.
+    /// Coefficients of atan(t) / (2 pi t) as a polynomial in t^2 on [0, 1], interpolated at
+    /// Chebyshev nodes. The error is at most 2e-9 turns.
     const ARC: [f64; 9] = [
         0.159154940584033,
         -0.05305122346559173,
@@ -89,43 +92,44 @@ pub fn atan2_turn_f64(y: f64, x: f64) -> f64 {
     (if x < 0.0 { 0.5 - quarter } else { quarter }).copysign(y)
 }
 
-/// Tangent of an angle in radians, in double precision.
+/// Returns the tangent of an angle in radians, in double precision.
 #[inline]
 pub fn tan_f64(x: f64) -> f64 {
     libm::tan(x)
 }
 
-/// Sine and cosine of an angle in radians, in double precision.
+/// Returns the sine and cosine of an angle in radians, in double precision.
 #[inline]
 pub fn sin_cos_f64(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// Arc sine in radians, in double precision.
+/// Returns the arc sine in radians, in double precision.
 #[inline]
 pub fn asin_f64(x: f64) -> f64 {
     libm::asin(x)
 }
 
-/// Arc tangent in radians, in double precision.
+/// Returns the arc tangent in radians, in double precision.
 #[inline]
 pub fn atan_f64(x: f64) -> f64 {
     libm::atan(x)
 }
 
-/// Arc tangent of `y / x` with the quadrant of the point (x, y), in radians, in double precision.
+/// Returns the arc tangent of `y / x` in radians, in the quadrant of the point (x, y), in double
+/// precision.
 #[inline]
 pub fn atan2_f64(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
-/// Arc sine, in radians.
+/// Returns the arc sine in radians.
 #[inline]
 pub fn asin(x: f32) -> f32 {
     libm::asinf(x)
 }
 
-/// Arc tangent of `y / x` with the quadrant of the point (x, y), in radians.
+/// Returns the arc tangent of `y / x` in radians, in the quadrant of the point (x, y).
 #[inline]
 pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
@@ -134,28 +138,29 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 /// Raises `base` to the power of `exponent`.
 ///
 /// For ordinary numbers, 2^(exponent log2 base) is computed in double precision. Its error is so
-/// small that after rounding to single precision, only near ties can differ from the exact result.
-/// Other cases use libm.
+/// small that, after rounding to single precision, the result can differ from the exact one only if
+/// there is nearly a tie. All other cases use `libm`.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
     let usual = fast_pow(base, exponent);
     if usual.is_nan() { libm::powf(base, exponent) } else { usual }
 }
 
-/// Computes [`pow`] for ordinary numbers, and NaN for all others. Branchless, so that compilers can
-/// vectorise it.
+/// Computes [`pow`] for ordinary numbers, and returns NaN for all others. The function has no
+/// branches, so compilers can vectorise it.
 #[inline(always)]
 pub fn fast_pow(base: f32, exponent: f32) -> f32 {
     let power = f64::from(exponent) * log2(base);
-    // The cast rounds results outside the range of single precision; NaN fails both tests.
+    // The cast rounds results outside the range of single precision. NaN fails both tests.
     let is_usual = (base == base.clamp(f32::MIN_POSITIVE, f32::MAX)) & (power.abs() < 1000.0);
     if is_usual { exp2(power) as f32 } else { f32::NAN }
 }
 
-/// Base-2 logarithm of a positive normal number, to 2 roundings of double precision.
+/// Returns the base-2 logarithm of a positive normal number, with an error of at most 2 roundings
+/// in double precision.
 ///
-/// Uses the series of log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1). m lies between the
-/// square roots of 1/2 and 2, so s^2 < 0.0295.
+/// The function uses the series of log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1). m lies
+/// between the square roots of 1/2 and 2, so s^2 < 0.0295.
 #[inline(always)]
 fn log2(x: f32) -> f64 {
     /// 2 / (ln 2 (2 k + 1)).
@@ -178,8 +183,8 @@ fn log2(x: f32) -> f64 {
     f64::from(exponent) + s * polynomial(s * s, &SERIES)
 }
 
-/// Computes 2^x for x between -1022 and 1022, to 2 roundings of double precision, by the series of
-/// e^(f ln 2) for |f| <= 1/2.
+/// Computes 2^x for x between -1022 and 1022 with the series of e^(f ln 2) for |f| <= 1/2. The
+/// error is at most 2 roundings in double precision.
 #[inline(always)]
 fn exp2(x: f64) -> f64 {
     /// (ln 2)^k / k!.
@@ -198,7 +203,7 @@ fn exp2(x: f64) -> f64 {
         4.4455382718708116e-10,
         2.5678435993488206e-11,
     ];
-    // Adding this removes the fraction.
+    // Adding this number removes the fraction.
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let shifted = x + WHOLE;
     // The bits of the sum are the bits of `WHOLE` plus the integer part.
@@ -206,7 +211,7 @@ fn exp2(x: f64) -> f64 {
     f64::from_bits(whole.wrapping_add(1023) << 52) * polynomial(x - (shifted - WHOLE), &SERIES)
 }
 
-/// Evaluates c0 + c1 x + c2 x^2 + ... in pairs (Estrin's scheme), which shortens the chain of
+/// Evaluates c0 + c1 x + c2 x^2 + ... in pairs (Estrin's scheme). This shortens the chain of
 /// dependent products.
 #[inline(always)]
 fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
@@ -230,7 +235,7 @@ pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
 
-/// Natural logarithm.
+/// Returns the natural logarithm of a number.
 #[inline]
 pub fn ln(x: f32) -> f32 {
     libm::logf(x)
@@ -314,7 +319,7 @@ mod tests {
         for base in numbers {
             for exponent in numbers {
                 let (actual, wanted) = (pow(base, exponent), libm::powf(base, exponent));
-                // In some places, libm itself has an error of one rounding.
+                // In some places, `libm` itself has an error of one rounding.
                 let near = (actual - wanted).abs() <= f32::EPSILON * wanted.abs();
                 assert!(
                     actual == wanted || near || actual.is_nan() && wanted.is_nan(),

@@ -16,10 +16,11 @@ pub use glam::{Vec2, Vec3};
 pub use ray::{Line, Ray, Ray64, StartSide};
 pub use rounding::{UNIT_ROUNDOFF, gamma};
 
-/// Unit normal (b - a) x (c - a) of a triangle; zero if the triangle has no area.
+/// Returns the unit normal (b - a) x (c - a) of a triangle, or zero if the triangle has no area.
 #[inline]
 pub fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
-    // In double precision, differences and products of single-precision numbers do not vanish.
+    // In double precision, differences and products of single-precision numbers do not underflow to
+    // zero.
     let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }

@@ -2,20 +2,20 @@
 
 use glam::{DAffine3, DMat3, DQuat, Vec3};
 
-/// Number of rounds of a test: `usual` times `DURER_ROUNDS`, which `cargo xtask long` sets. Under
-/// Miri, which is far slower, it is a five-hundredth of that.
+/// Returns the number of rounds of a test: `usual` times `DURER_ROUNDS`, which `cargo xtask long`
+/// sets. Under Miri, which is far slower, the number is divided by 500.
 pub fn rounds(usual: usize) -> usize {
     let usual = if cfg!(miri) { usual.div_ceil(500) } else { usual };
     let times = std::env::var("DURER_ROUNDS").ok();
     usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
 }
 
-/// A SplitMix64 random number generator, for reproducible tests. Source: Steele, Lea, Flood, *Fast
+/// A SplitMix64 random number generator for reproducible tests. Source: Steele, Lea, Flood, *Fast
 /// Splittable Pseudorandom Number Generators*, OOPSLA 2014.
 pub struct Random(pub u64);
 
 impl Random {
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -23,27 +23,27 @@ impl Random {
         z ^ z >> 31
     }
 
-    /// Uniform number in [0, 1).
+    /// Returns a uniform random number in [0, 1).
     pub fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u64 << 24) as f32
     }
 
-    /// Uniform number between `low` and `high`.
+    /// Returns a uniform random number between `low` and `high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.unit()
     }
 
-    /// Integer below `count`.
+    /// Returns a random integer below `count`.
     pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    /// Uniform point in the cube [-1, 1]^3.
+    /// Returns a uniform random point in the cube [-1, 1]^3.
     pub fn point(&mut self) -> Vec3 {
         Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
     }
 
-    /// Uniform direction on the sphere.
+    /// Returns a uniform random direction on the sphere.
     pub fn direction(&mut self) -> Vec3 {
         loop {
             let p = self.point();
@@ -53,14 +53,14 @@ impl Random {
         }
     }
 
-    /// Rotation about a random axis.
+    /// Returns a rotation about a random axis.
     pub fn rotation(&mut self) -> DMat3 {
         let axis = self.direction().as_dvec3().normalize();
         DMat3::from_quat(DQuat::from_axis_angle(axis, f64::from(self.between(-3.1, 3.1))))
     }
 
-    /// Scaling along rotated axes by factors from 1/`stretch` to `stretch`, sometimes mirrored,
-    /// followed by a translation within a cube of half size `distance`.
+    /// Returns a random map that scales along rotated axes by factors from 1/`stretch` to
+    /// `stretch`, sometimes mirrors, and then translates within a cube of half size `distance`.
     pub fn affine(&mut self, stretch: f32, distance: f32) -> DAffine3 {
         let mut factor = || {
             let sign = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };

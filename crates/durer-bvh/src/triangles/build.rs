@@ -13,16 +13,17 @@ use std::mem::MaybeUninit;
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
-    /// Builds a tree over triangles given as three vertex indices each. Triangles with a corner
-    /// that is not finite are never hit.
+    /// Builds a tree over triangles given as three vertex indices each. Triangles with a non-finite
+    /// corner are never hit.
     ///
     /// The result depends only on the arguments. The tree takes about 50 bytes per triangle, or up
-    /// to 100 if triangles overlap a lot. The build takes up to 140 bytes more (340 with
-    /// [`BuildQuality::Best`]). The depth is bounded for any input.
+    /// to 100 if triangles overlap a lot. The build temporarily takes up to 140 additional bytes
+    /// per triangle (340 with [`BuildQuality::Best`]). The depth of the tree is bounded for any
+    /// input.
     ///
     /// # Panics
     ///
-    /// If [`TriangleBvh::try_build`] fails.
+    /// Panics if [`TriangleBvh::try_build`] fails.
     pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
         Self::try_build(vertices, triangles, quality).unwrap_or_else(|error| panic!("{error}"))
     }
@@ -31,11 +32,12 @@ impl TriangleBvh {
     ///
     /// # Errors
     ///
-    /// If an index is out of range, or there are 2^28 triangles or more.
+    /// Returns an error if an index is out of range or if there are 2^28 triangles or more.
     ///
     /// # Panics
     ///
-    /// If the tree has more than 2^26 nodes. Ordinary meshes have 25 triangles per node.
+    /// Panics if the tree has more than 2^26 nodes. Ordinary meshes have about 25 triangles per
+    /// node.
     pub fn try_build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Result<Self, BuildError> {
         if triangles.len() > node::MAX_ITEMS {
             return Err(BuildError::TooManyTriangles { triangles: triangles.len() });
@@ -47,13 +49,13 @@ impl TriangleBvh {
         })
     }
 
-    /// Builds a tree from flat lists: x, y, and z of each vertex, and three indices of each
+    /// Builds a tree from flat lists, with x, y, and z of each vertex and the three indices of each
     /// triangle.
     ///
     /// # Errors
     ///
-    /// If the length of a list is not a multiple of three, an index is out of range, or there are
-    /// 2^28 triangles or more.
+    /// Returns an error if the length of a list is not a multiple of three, if an index is out of
+    /// range, or if there are 2^28 triangles or more.
     ///
     /// ```
     /// use durer_bvh::{BuildError, BuildQuality, TriangleBvh};
@@ -89,21 +91,22 @@ impl TriangleBvh {
     }
 
     /// Fits the tree to moved vertices of the same triangles. Refitting is much faster than
-    /// building, but the farther the vertices move, the slower rays become.
+    /// building, but rays become slower the farther the vertices move.
     ///
     /// # Panics
     ///
-    /// If [`TriangleBvh::try_refit`] fails.
+    /// Panics if [`TriangleBvh::try_refit`] fails.
     pub fn refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         self.try_refit(vertices, triangles).unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// Refits the tree as [`TriangleBvh::refit`] does, and returns an error for invalid input. The
-    /// tree is then unchanged.
+    /// Refits the tree as [`TriangleBvh::refit`] does, and returns an error for invalid input. If
+    /// there is an error, the tree is unchanged.
     ///
     /// # Errors
     ///
-    /// If an index is out of range, or the number of triangles differs from that at build time.
+    /// Returns an error if an index is out of range or if the number of triangles has changed since
+    /// the build.
     pub fn try_refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
         if triangles.len() != self.count {
             return Err(BuildError::TriangleCountMismatch { built: self.count, refitted: triangles.len() });
@@ -127,22 +130,22 @@ impl TriangleBvh {
         Ok(())
     }
 
-    /// Number of triangles that the tree was built over.
+    /// Returns the number of triangles that the tree was built over.
     pub fn triangle_count(&self) -> usize {
         self.count
     }
 
-    /// Number of triangles in all leaves: more than [`TriangleBvh::triangle_count`] if some were
-    /// split.
+    /// Returns the total number of triangles in all leaves. It exceeds
+    /// [`TriangleBvh::triangle_count`] if some triangles were split.
     pub(super) fn items(&self) -> usize {
         (self.leaves.len() - ROWS_LEN) / ROWS
     }
 
-    /// Writes the rows of all leaves, with triangle numbers from `order`, or the present ones if
-    /// `None`.
+    /// Writes the rows of all leaves. The triangle numbers come from `order`, or stay as they are
+    /// if it is `None`.
     fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         let items = self.items();
-        // Number of triangles of each leaf, at the position of its first item.
+        // Number of triangles in each leaf, at the position of the leaf's first item.
         let mut counts = vec![0u8; items];
         for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {
             if child & node::LEAF != 0 {
@@ -167,7 +170,7 @@ impl TriangleBvh {
                 Some(order) => order[first..first + counts.len()].to_vec(),
                 None => numbers(counts, part),
             };
-            // Reading all indices at once overlaps the cache misses.
+            // Reading all indices at once allows the cache misses to overlap.
             let mut indices = numbers.iter().map(|&number| triangles[number as usize]).collect::<Vec<_>>().into_iter();
             let mut numbers = numbers.into_iter();
             while let Some(&count) = counts.first() {
@@ -185,7 +188,8 @@ impl TriangleBvh {
 
 fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
     let is_wrong = |triangle: &[u32; 3]| triangle.iter().any(|i| *i as usize >= vertices.len());
-    // Indices are nearly always valid, so search for the first invalid one only if there is one.
+    // Indices are nearly always valid, so the code searches for the first invalid index only if
+    // there is one.
     if !parallel::any(triangles, 1 << 16, is_wrong) {
         return Ok(());
     }
@@ -196,7 +200,7 @@ fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildE
     wrong.map_or(Ok(()), Err)
 }
 
-/// Numbers of the triangles of some leaves, from their rows and counts.
+/// Returns the triangle numbers of some leaves, given their rows and counts.
 fn numbers(counts: &[u8], mut rows: &[f32]) -> Vec<u32> {
     let mut numbers = Vec::with_capacity(counts.len());
     while numbers.len() < counts.len() {

@@ -1,4 +1,4 @@
-//! Height grids, whose triangles are computed when they are needed.
+//! Height grids, whose triangles are computed on demand.
 
 use super::rows::TAG;
 use crate::BuildError;
@@ -10,12 +10,13 @@ use crate::node::{self, LEAF_SIZE};
 const SIDE: usize = 2;
 const _: () = assert!(2 * SIDE * SIDE == LEAF_SIZE);
 
-/// A height field such as terrain: heights y at the crossings of grid lines of constant x and z,
-/// from which a [`TriangleBvh`] computes triangles.
+/// A height field such as terrain. It stores heights y at the crossings of grid lines with constant
+/// x and z, and a [`TriangleBvh`] computes triangles from it.
 ///
 /// Crossings and cells are numbered along x first. A cell lies between four crossings and has two
-/// triangles. With a at the lower x and z, b at the next z, c at the next x, and d at the next x
-/// and z, cell i has the triangles (a, b, d) with number 2 i and (a, d, c) with number 2 i + 1.
+/// triangles. Let a be the crossing at the lower x and z, b the one at the next z, c the one at the
+/// next x, and d the one at the next x and z. Then cell i has the triangles (a, b, d) with number 2
+/// i and (a, d, c) with number 2 i + 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightGrid {
     xs: Vec<f32>,
@@ -24,13 +25,14 @@ pub struct HeightGrid {
 }
 
 impl HeightGrid {
-    /// Creates a grid from the x and z of its lines, and the heights at the crossings, along x
-    /// first.
+    /// Creates a grid from the x and z coordinates of its lines and the heights at the crossings,
+    /// listed along x first.
     ///
     /// # Errors
     ///
-    /// If there are fewer than two lines in a direction, the number of heights differs from the
-    /// number of crossings, a number is not finite, or there are 2^28 triangles or more.
+    /// Returns an error if there are fewer than two lines along an axis, if the number of heights
+    /// differs from the number of crossings, if a number is not finite, or if there are 2^28
+    /// triangles or more.
     pub fn new(xs: Vec<f32>, zs: Vec<f32>, heights: Vec<f32>) -> Result<Self, BuildError> {
         let (columns, rows) = (xs.len(), zs.len());
         if columns < 2 || rows < 2 || columns.checked_mul(rows) != Some(heights.len()) {
@@ -46,34 +48,34 @@ impl HeightGrid {
         }
     }
 
-    /// x of the lines along z.
+    /// Returns the x coordinates of the lines along z.
     pub fn xs(&self) -> &[f32] {
         &self.xs
     }
 
-    /// z of the lines along x.
+    /// Returns the z coordinates of the lines along x.
     pub fn zs(&self) -> &[f32] {
         &self.zs
     }
 
-    /// Heights of the crossings, along x first.
+    /// Heights of the crossings, listed along x first.
     pub fn heights(&self) -> &[f32] {
         &self.heights
     }
 
-    /// Maps all coordinates. `coordinate` takes an axis (0 to 2) and a coordinate, and returns the
-    /// new one.
+    /// Applies a function to all coordinates. `coordinate` takes an axis (0 to 2) and a coordinate
+    /// and returns the new coordinate.
     pub fn map(&self, mut coordinate: impl FnMut(usize, f32) -> f32) -> Self {
         let mut along = |axis: usize, list: &[f32]| list.iter().map(|x| coordinate(axis, *x)).collect();
         HeightGrid { xs: along(0, &self.xs), zs: along(2, &self.zs), heights: along(1, &self.heights) }
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         2 * (self.xs.len() - 1) * (self.zs.len() - 1)
     }
 
-    /// Position of a crossing.
+    /// Returns the position of a crossing.
     #[inline]
     pub fn point(&self, crossing: usize) -> Vec3 {
         let (number, columns) = (crossing as u32, self.xs.len() as u32);
@@ -81,7 +83,7 @@ impl HeightGrid {
         Vec3::new(self.xs[(number - row * columns) as usize], self.heights[crossing], self.zs[row as usize])
     }
 
-    /// Crossings at the corners of a triangle.
+    /// Returns the crossings at the corners of a triangle.
     #[inline]
     pub fn triangle(&self, number: usize) -> [u32; 3] {
         let [column, row] = self.cell(number);
@@ -91,7 +93,7 @@ impl HeightGrid {
         if number.is_multiple_of(2) { [a, b, b + 1] } else { [a, b + 1, a + 1] }
     }
 
-    /// Corners of a triangle.
+    /// Returns the corners of a triangle.
     #[inline]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         let ([column, row], columns) = (self.cell(number).map(|line| line as usize), self.xs.len());
@@ -104,16 +106,16 @@ impl HeightGrid {
         }
     }
 
-    /// Column and row of a triangle's cell.
+    /// Returns the column and row of the cell that contains a triangle.
     #[inline]
     fn cell(&self, triangle: usize) -> [u32; 2] {
-        // 32-bit division is faster.
+        // A 32-bit division is faster.
         let (cell, wide) = ((triangle / 2) as u32, (self.xs.len() - 1) as u32);
         let row = cell / wide;
         [cell - row * wide, row]
     }
 
-    /// Bounding box of the crossings.
+    /// Returns the bounding box of some crossings.
     pub fn bounds(&self) -> Aabb {
         let ends =
             |list: &[f32]| list.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
@@ -121,17 +123,17 @@ impl HeightGrid {
         Aabb { min: Vec3::new(x, y, z), max: Vec3::new(x1, y1, z1) }
     }
 
-    /// Size of the lists in bytes.
+    /// Returns the size of the lists in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.xs) + size_of_val(&*self.zs) + size_of_val(&*self.heights)
     }
 
-    /// Numbers of blocks along x and z.
+    /// Returns the numbers of blocks along x and z.
     pub(super) fn blocks(&self) -> [usize; 2] {
         [&self.xs, &self.zs].map(|lines| (lines.len() - 1).div_ceil(SIDE))
     }
 
-    /// First column and row of a block, and its numbers of cells along x and z.
+    /// Returns the first column and row of a block, and its numbers of cells along x and z.
     pub(super) fn cells(&self, block: usize) -> [[usize; 2]; 2] {
         let beside = self.blocks()[0];
         let first = [SIDE * (block % beside), SIDE * (block / beside)];
@@ -148,7 +150,7 @@ impl HeightGrid {
     pub(super) fn write_rows(&self, block: usize, rows: &mut Rows) {
         let [first, cells] = self.cells(block);
         match cells {
-            // Sizes known at compile time remove the loops.
+            // If the sizes are known at compile time, the compiler can remove the loops.
             [SIDE, SIDE] => self.write_cells(first, [SIDE, SIDE], rows),
             _ => self.write_cells(first, cells, rows),
         }

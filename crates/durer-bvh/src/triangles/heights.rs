@@ -1,7 +1,7 @@
 //! Trees over height grids.
 //!
-//! The leaves are blocks of two by two cells of a [`HeightGrid`]. Their rows are computed whenever
-//! a ray visits them. Everything else is as for other triangles.
+//! The leaves are blocks of two by two cells of a [`HeightGrid`]. The rows of a leaf are computed
+//! whenever a ray visits it. Everything else works as for other triangles.
 
 use super::height_grid::HeightGrid;
 use super::rows::put;
@@ -14,16 +14,16 @@ use crate::{BuildError, parallel};
 use std::sync::{Arc, OnceLock};
 
 impl TriangleBvh {
-    /// Builds a tree over a height grid and other triangles, for example walls around it, which are
-    /// numbered after those of the grid. Each leaf holds eight consecutive triangles of `others`,
-    /// so neighbours should be next to each other in that list.
+    /// Builds a tree over a height grid and other triangles, for example walls around it. The other
+    /// triangles are numbered after those of the grid. Each leaf holds eight consecutive triangles
+    /// of `others`, so neighbouring triangles should be close to each other in that list.
     ///
     /// Hits have the same bits as in a tree that stores all triangles. In addition to the heights,
-    /// the tree takes about 5 bytes per triangle of the grid, and the build up to 20 more.
+    /// the tree takes about 5 bytes per triangle of the grid, and the build takes up to 20 more.
     ///
     /// # Errors
     ///
-    /// If there are 2^28 triangles or more.
+    /// Panics if there are 2^28 triangles or more.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -82,8 +82,8 @@ impl TriangleBvh {
         TriangleBvh { heights: Some(grid), ..bvh }
     }
 
-    /// Item number of the first block. Blocks are numbered after all items whose rows are in
-    /// memory.
+    /// Returns the item number of the first block. Blocks are numbered after all items whose rows
+    /// are in memory.
     pub(super) fn first_block(&self) -> usize {
         self.items() + 1
     }

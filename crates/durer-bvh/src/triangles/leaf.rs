@@ -1,14 +1,16 @@
-//! SIMD triangle tests: several triangles and one ray, or one triangle and several rays.
+//! SIMD triangle tests, either of several triangles against one ray or of one triangle against
+//! several rays.
 //!
-//! The test gives the same results as that of [`WatertightRay`](crate::watertight::WatertightRay),
-//! with the same rounding. Edge functions in single precision have the correct sign unless they are
-//! zero, so vector arithmetic is enough to reject or accept nearly all triangles. The exact scalar
-//! test decides the others. For any-hit rays, bounds on t are usually sufficient. For the closest
-//! hit, t is computed in double precision for every crossed triangle.
+//! The test gives the same results as the one in
+//! [`WatertightRay`](crate::watertight::WatertightRay), with the same rounding. In single
+//! precision, the sign of an edge function is correct unless the result is zero, so vector
+//! arithmetic is enough to reject or accept nearly all triangles. The exact scalar test decides the
+//! remaining cases. For any-hit rays, bounds on t are usually sufficient. For the closest hit, t is
+//! computed in double precision for every crossed triangle.
 
 use crate::lanes::FloatLanes;
 
-/// Calls a macro for each corner and axis. (A closure might not be inlined, and would then be
+/// Calls a macro for each corner and axis. (A closure might not be inlined, and it would then be
 /// compiled without the instructions of the SIMD level.)
 macro_rules! by_corner {
     ($make:ident) => {
@@ -21,38 +23,39 @@ macro_rules! by_corner {
 }
 pub(super) use by_corner;
 
-/// Triangles projected along rays, with their edge functions: several triangles for one ray, or one
-/// triangle for several rays.
+/// Triangles projected along rays, with their edge functions. There are either several triangles
+/// for one ray or one triangle for several rays.
 pub struct ProjectedTriangles<N: FloatLanes> {
-    /// Projected position of each corner in the plane across the ray, and its height along the
-    /// third axis.
+    /// Projected position of each corner in the plane perpendicular to the ray, and its height
+    /// along the third axis.
     corners: [[N::Floats; 3]; 3],
-    /// Edge functions of the edges opposite to the corners.
+    /// Edge functions of the edges opposite the corners.
     edges: [N::Floats; 3],
-    /// Product of the least and the greatest edge function: positive if all have the same sign,
-    /// negative if not, and zero if the result is uncertain.
+    /// Product of the smallest and the largest edge function. It is positive if all have the same
+    /// sign, negative if they do not, and zero if the result is uncertain.
     sign: N::Floats,
 }
 
-/// Bounds on the t at which rays cross triangles, in single precision; NaN if unknown. Returned by
-/// [`ProjectedTriangles::span`].
+/// Bounds on the `t` at which rays cross triangles, in single precision. They are NaN if unknown.
+/// [`ProjectedTriangles::span`] returns them.
 pub struct TBounds<N: FloatLanes> {
     pub near: N::Floats,
     pub far: N::Floats,
 }
 
 impl<N: FloatLanes> ProjectedTriangles<N> {
-    /// Projects corners. Corners and origins have permuted axes, as in
+    /// Projects corners. The axes of corners and origins are permuted, as in
     /// [`WatertightRay`](crate::watertight::WatertightRay).
     ///
-    /// The rounding is the same as in the scalar test, so the signs of edge functions are exact
-    /// unless they are zero.
+    /// The rounding is the same as in the scalar test, so edge functions have the exact sign unless
+    /// they are zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
         ProjectedTriangles::new_relative(numbers, from_origin(numbers, corners, origin), shear)
     }
 
-    /// Projects corners [relative to the origin](from_origin); see [`ProjectedTriangles::new`].
+    /// Projects corners that are [relative to the origin](from_origin); see
+    /// [`ProjectedTriangles::new`].
     #[inline(always)]
     pub fn new_relative(numbers: N, corners: [[N::Floats; 3]; 3], shear: [N::Floats; 2]) -> Self {
         let corners @ [a, b, c] = [
@@ -65,36 +68,36 @@ impl<N: FloatLanes> ProjectedTriangles<N> {
         ProjectedTriangles { corners, edges, sign }
     }
 
-    /// Mask of the triangles that the ray's line certainly misses.
+    /// Returns a mask of the triangles that the ray's line certainly misses.
     #[inline(always)]
     pub fn missed(&self, numbers: N) -> u32 {
         numbers.lt(self.sign, numbers.splat(0.0))
     }
 
-    /// Mask of the triangles that the ray's line certainly crosses.
+    /// Returns a mask of the triangles that the ray's line certainly crosses.
     #[inline(always)]
     pub fn crossed(&self, numbers: N) -> u32 {
         numbers.lt(numbers.splat(0.0), self.sign)
     }
 
-    /// Heights of the lowest and the highest corner.
+    /// Returns the heights of the lowest and the highest corner.
     #[inline(always)]
     pub fn heights(&self, numbers: N) -> [N::Floats; 2] {
         let [a, b, c] = self.corners;
         ends(numbers, [a[2], b[2], c[2]])
     }
 
-    /// Bounds on t for triangles that are certainly crossed.
+    /// Returns bounds on `t` for triangles that are certainly crossed.
     ///
     /// The height z of the crossing is the mean of the corners' heights, weighted by the edge
-    /// functions. Let R bound the coordinates of the corners across the ray, Z their heights, and H
-    /// the differences of their heights. With e = 2^-23, the error of a coordinate across the ray
-    /// is at most e (R + 2 Z), so that of an edge function is at most e (6 R^2 + 8 R Z). Errors of
-    /// the weights change the mean by at most the sum of the errors times H, divided by the sum of
-    /// the weights. Twice this value is a bound even if the sum of the weights is itself uncertain:
-    /// it then exceeds H, and both the mean and the `t` of [`WatertightRay`] lie between the
-    /// heights of the corners. Other rounding errors add less than 6 e Z, and a few times the
-    /// smallest number.
+    /// functions. Let R be a bound on the coordinates of the corners in the plane perpendicular to
+    /// the ray, Z a bound on their heights, and H a bound on the differences between the heights.
+    /// With e = 2^-23, the error of a coordinate in that plane is at most e (R + 2 Z), so the error
+    /// of an edge function is at most e (6 R^2 + 8 R Z). Errors in the weights change the mean by
+    /// at most the sum of the errors times H, divided by the sum of the weights. Twice this value
+    /// is a bound even if the sum of the weights is itself uncertain. In that case, the value
+    /// exceeds H, and both the mean and the `t` of [`WatertightRay`] lie between the heights of the
+    /// corners. Other rounding errors add less than 6 e Z, plus a few times the smallest number.
     ///
     /// `inverse_z` is `1 / dz`. The longest component dz of the direction must lie between 10^-15
     /// and 10^15, and coordinates must be below 10^15.
@@ -118,13 +121,13 @@ impl<N: FloatLanes> ProjectedTriangles<N> {
     }
 }
 
-/// Minimum and maximum of three numbers.
+/// Returns the minimum and maximum of three numbers.
 #[inline(always)]
 pub fn ends<N: FloatLanes>(numbers: N, [a, b, c]: [N::Floats; 3]) -> [N::Floats; 2] {
     [numbers.min(a, numbers.min(b, c)), numbers.max(a, numbers.max(b, c))]
 }
 
-/// Corners relative to an origin.
+/// Returns the corners relative to an origin.
 #[inline(always)]
 pub fn from_origin<N: FloatLanes>(
     numbers: N,
@@ -139,14 +142,14 @@ pub fn from_origin<N: FloatLanes>(
     by_corner!(seen)
 }
 
-/// Projects a point, given relative to the origin, onto the plane across the ray. The third
-/// component is the height along the third axis.
+/// Projects a point, given relative to the origin, onto the plane perpendicular to the ray. The
+/// third component is the height along the third axis.
 #[inline(always)]
 pub fn project<N: FloatLanes>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
     [numbers.sub(x, numbers.mul(shear[0], z)), numbers.sub(y, numbers.mul(shear[1], z)), z]
 }
 
-/// Edge function of the edge from `p` to `q` at the origin.
+/// Returns the edge function of the edge from `p` to `q` at the origin.
 #[inline(always)]
 fn edge<N: FloatLanes>(numbers: N, p: [N::Floats; 3], q: [N::Floats; 3]) -> N::Floats {
     numbers.sub(numbers.mul(q[0], p[1]), numbers.mul(q[1], p[0]))

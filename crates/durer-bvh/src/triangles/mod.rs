@@ -43,8 +43,8 @@ fn counting<T: TraversalCounter, A>(
     answer
 }
 
-/// Sorts hits by `t`, then by triangle number, and removes duplicates: a split triangle is found in
-/// several leaves.
+/// Sorts hits by `t` and then by triangle number, and removes duplicates. They arise because a
+/// split triangle is found in several leaves.
 fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
     all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
     all.dedup_by_key(|hit| hit.triangle);
@@ -57,19 +57,19 @@ impl TriangleBvh {
         TriangleBvh { level: AvailableLevel::or_scalar(level), ..self }
     }
 
-    /// Sets the least |(b - a) x (c - a) · d| of a triangle that rays with direction d can hit, to
-    /// cull slivers and edge-on triangles. With 0, all triangles can be hit.
+    /// Sets the smallest |(b - a) x (c - a) · d| of a triangle that rays with direction d can hit,
+    /// so that slivers and edge-on triangles are culled. If it is 0, all triangles can be hit.
     pub fn min_volume(self, min_volume: f64) -> Self {
         TriangleBvh { min_volume, culls_slivers: min_volume != 0.0, ..self }
     }
 
-    /// Prepares a ray for tests of single triangles, with the least volume of the tree.
+    /// Prepares a ray for tests of single triangles, with the minimum volume of the tree.
     #[inline]
     pub fn watertight_ray(&self, ray: &Ray) -> WatertightRay {
         WatertightRay::new(ray).min_volume(self.min_volume)
     }
 
-    /// Closest hit in the ray's open interval (`t_min`, `t_max`).
+    /// Returns the closest hit in the ray's open interval (`t_min`, `t_max`).
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         self.query::<_, ClosestHit>(ray, ())
     }
@@ -91,8 +91,8 @@ impl TriangleBvh {
         counting(counter, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
     }
 
-    /// Finds the closest hit that passes `filter`, for example for textures with holes, culled
-    /// sides, or excluded triangles.
+    /// Finds the closest hit that passes `filter`. Filters are useful for textures with holes,
+    /// culled sides, or excluded triangles.
     ///
     /// The filter may be called several times for a triangle, in any order, and for hits that are
     /// not the closest. Its result should depend only on its arguments.
@@ -122,7 +122,7 @@ impl TriangleBvh {
         self.occluded_filtered(ray, &mut filter)
     }
 
-    /// Hits in the ray's open interval, sorted by `t`, then by triangle number.
+    /// Returns the hits in the ray's open interval, sorted by `t` and then by triangle number.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
         in_order(self.query::<_, AllHits>(ray, ()))
     }
@@ -133,7 +133,7 @@ impl TriangleBvh {
         counting(counter, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
     }
 
-    // These functions are not generic, so that they are compiled only once and not for each caller.
+    // These functions are not generic so that they are compiled only once and not once per caller.
 
     pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
         self.query_with(ray, (), Filtered { inner: ClosestHit::default(), filter })
@@ -155,23 +155,23 @@ impl TriangleBvh {
         in_order(self.query::<_, AllHits>(ray, counts))
     }
 
-    /// Number of triangles that the ray crosses in its open interval: odd from inside a closed
-    /// mesh, even from outside.
+    /// Returns the number of triangles that the ray crosses in its open interval. For a closed
+    /// mesh, it is odd if the ray starts inside and even if it starts outside.
     pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
     /// Finds the closest hit of each ray, in order. The hits equal those of
     /// [`TriangleBvh::closest`], bit for bit, but a batch is faster. Within each group of 64
-    /// consecutive rays, those with similar origins and directions are traced as packets, so rays
-    /// that are close in space, such as those of the pixels of a tile, should be close in the list.
-    /// After incoherent rays, up to 960 rays are not tested for coherence. In a large tree, several
-    /// of the remaining rays are traced in turn, so that one ray proceeds while another waits for
-    /// memory.
+    /// consecutive rays, rays with similar origins and directions are traced as packets. Rays that
+    /// are close in space, such as those of the pixels of a tile, should therefore be close in the
+    /// list. After a group of incoherent rays, up to 960 rays are not tested for coherence. In a
+    /// large tree, several of the remaining rays are traced in turn, so that one ray can proceed
+    /// while another waits for memory.
     ///
     /// # Panics
     ///
-    /// If `rays` and `hits` have different lengths.
+    /// Panics if `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "`rays` and `hits` must have the same length");
         let hits = Cell::from_mut(hits).as_slice_of_cells();
@@ -182,12 +182,12 @@ impl TriangleBvh {
         );
     }
 
-    /// Tests occlusion of each ray, in order; rays are grouped as in
+    /// Tests occlusion of each ray, in order. Rays are grouped as in
     /// [`TriangleBvh::closest_batch`].
     ///
     /// # Panics
     ///
-    /// If `rays` and `answers` have different lengths.
+    /// Panics if `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "`rays` and `answers` must have the same length");
         let answers = Cell::from_mut(answers).as_slice_of_cells();
@@ -202,14 +202,14 @@ impl TriangleBvh {
     ///
     /// # Panics
     ///
-    /// If `rays` and `counts` have different lengths.
+    /// Panics if `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
         assert_eq!(rays.len(), counts.len(), "`rays` and `counts` must have the same length");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 
-    /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
-    /// hits, sorted as in [`TriangleBvh::all_hits`].
+    /// Finds the hits of each ray, in order. `take` receives the index of the ray in the batch and
+    /// its hits, sorted as in [`TriangleBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[TriangleHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
@@ -227,8 +227,8 @@ impl TriangleBvh {
         }
     }
 
-    /// Corners of a triangle; `None` if the triangle does not exist or has a corner that is not
-    /// finite.
+    /// Returns the corners of a triangle, or `None` if the triangle does not exist or has a
+    /// non-finite corner.
     ///
     /// The first call builds an index with four bytes per triangle.
     #[inline]
@@ -261,7 +261,8 @@ impl TriangleBvh {
         leaf_of
     }
 
-    /// Unit normal (b - a) x (c - a) of the hit triangle; zero if the triangle has no area.
+    /// Returns the unit normal (b - a) x (c - a) of the hit triangle, or zero if the triangle has
+    /// no area.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -277,25 +278,26 @@ impl TriangleBvh {
         self.corners(hit.triangle).map_or(Vec3::ZERO, math::triangle_normal)
     }
 
-    /// Size in bytes.
+    /// Returns the size in bytes.
     pub fn memory_usage(&self) -> usize {
         let leaf_of = self.leaf_of.get().map_or(0, |leaf_of| size_of_val(&**leaf_of));
         let heights = self.heights.as_ref().map_or(0, |grid| grid.memory_usage());
         size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of + heights
     }
 
-    /// Expected cost of a random ray through the bounds by the surface area heuristic, in node
-    /// tests. A leaf is assumed to cost as much as a node. NaN if the bounds have no area.
+    /// Returns the expected cost, in node tests, of a random ray through the bounds, by the surface
+    /// area heuristic. A leaf is assumed to cost as much as a node. The cost is NaN if the bounds
+    /// have no area.
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 
-    /// Bounding box of all triangles.
+    /// Returns the bounding box of all triangles.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Iterates over the boxes of the tree, level by level.
+    /// Iterates over the boxes of the tree level by level.
     pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
         tree_boxes::boxes(&self.nodes).map(|(_, bounds)| bounds)
     }

@@ -8,7 +8,7 @@ use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
 use std::mem::MaybeUninit;
 
-/// Point on a mesh that is nearest to a query point; the result of [`TriangleBvh::nearest_point`].
+/// Point on a mesh that is nearest to a query point, as returned by [`TriangleBvh::nearest_point`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
     /// Distance from the query point.
@@ -21,12 +21,12 @@ pub struct NearestPoint {
     pub triangle: u32,
 }
 
-/// Factor for distances to boxes. It reduces them by much more than their rounding error, so that
-/// the result does not depend on the boxes of the tree.
+/// Factor by which distances to boxes are multiplied. It reduces the distances by much more than
+/// their rounding error, so that the result does not depend on the boxes of the tree.
 const SLACK: f64 = 1.0 - 1e-12;
 
 impl TriangleBvh {
-    /// Finds the point on the triangles that is nearest to `point`, if its distance is at most
+    /// Finds the point on the triangles that is nearest to `point` if its distance is at most
     /// `within`. If several triangles are at the same distance, the one with the lowest number is
     /// chosen. The computation is in double precision, and the result has the same bits for all
     /// build qualities.
@@ -58,7 +58,7 @@ impl TriangleBvh {
                 let (squares, first) = (squares(node, point), stack.len());
                 let near = (0..WIDTH).filter(|&i| squares[i] <= best.squared && squares[i] < f64::INFINITY);
                 stack.extend(near.map(|i| (squares[i], node.children[i])));
-                // The nearest child is next.
+                // The nearest child is visited next.
                 stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
             } else {
                 let mut room = MaybeUninit::uninit();
@@ -70,8 +70,8 @@ impl TriangleBvh {
     }
 }
 
-/// Squared distances from `point` to the boxes of a node, slightly reduced; infinite for unused
-/// slots.
+/// Returns the squared distances from `point` to the boxes of a node, slightly reduced. They are
+/// infinite for unused slots.
 fn squares(node: &WideNode, point: DVec3) -> [f64; WIDTH] {
     let mut squares = [0.0; WIDTH];
     for (axis, [lower, upper]) in node.planes.iter().enumerate() {
@@ -89,7 +89,7 @@ fn corners(rows: &Rows, count: usize, lane: usize) -> [DVec3; 3] {
     [0, 3, 6].map(|row| DVec3::new(at(row), at(row + 1), at(row + 2)))
 }
 
-/// Nearest point found so far by a closest-point query, and its squared distance.
+/// Nearest point that a closest-point query has found so far, and its squared distance.
 struct NearestSoFar {
     squared: f64,
     found: Option<(DVec3, [f64; 2], u32)>,
@@ -98,7 +98,7 @@ struct NearestSoFar {
 impl NearestSoFar {
     fn offer(&mut self, point: DVec3, corners: [DVec3; 3], triangle: u32) {
         let (squared, nearest, uv) = nearest_of(point, corners);
-        // NaN corners give a NaN distance, which never compares less.
+        // Corners with NaN give a NaN distance, and comparing it as less returns false.
         let is_first = self.found.is_none_or(|(.., known)| triangle < known);
         if squared < self.squared || squared == self.squared && is_first {
             *self = NearestSoFar { squared, found: Some((nearest, uv, triangle)) };
@@ -106,11 +106,11 @@ impl NearestSoFar {
     }
 }
 
-/// Nearest point of a triangle: squared distance, position, and second and third barycentric
-/// coordinates.
+/// Returns the nearest point of a triangle: its squared distance, its position, and its second and
+/// third barycentric coordinates.
 ///
-/// It is the foot of the perpendicular if that is in the triangle, and otherwise the nearest point
-/// on an edge. Triangles without area need no special case.
+/// The nearest point is the foot of the perpendicular if that is in the triangle. Otherwise, it is
+/// the nearest point on an edge. Triangles without area do not need a special case.
 fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     let (ab, ac, from) = (b - a, c - a, point - a);
     let at = |[u, v]: [f64; 2]| {
@@ -123,7 +123,7 @@ fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= area {
         return at([u / area, v / area]);
     }
-    // Parameter of the nearest point on an edge, in [0, 1].
+    // Returns the parameter of the nearest point on an edge, in [0, 1].
     let along = |from: DVec3, edge: DVec3| match edge.length_squared() {
         0.0 => 0.0,
         square => (from.dot(edge) / square).clamp(0.0, 1.0),
@@ -178,8 +178,8 @@ mod tests {
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh is inside the torus, by at most the sagittas of its edges: 0.3 (1 - cos(pi /
-            // 100)) and 1 - cos(pi / 200).
+            // The mesh lies inside the torus. Its distance from the torus is at most the sagittas
+            // of its edges: 0.3 (1 - cos(pi / 100)) and 1 - cos(pi / 200).
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
         }

@@ -1,4 +1,4 @@
-//! Ray queries on a [`TriangleBvh`]: one traversal for closest-hit, any-hit, and all-hits rays.
+//! Ray queries on a [`TriangleBvh`]. Closest-hit, any-hit, and all-hits rays share one traversal.
 
 use super::fetch::{PrefetchAddresses, SIBLING_LINES};
 use super::leaf::ProjectedTriangles;
@@ -12,8 +12,8 @@ use crate::watertight::{Plane, PreciseLine, WatertightRay, axis_order};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 
-/// A query of one ray on a [`TriangleBvh`], as a kernel. The collector `F` determines which hits
-/// are returned.
+/// Kernel that runs a query of one ray on a [`TriangleBvh`]. The collector `F` determines which
+/// hits are returned.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
@@ -28,24 +28,25 @@ pub struct RayInTree<'a> {
     sheared: WatertightRay,
 }
 
-/// Collector of the hits of a ray query, such as the closest hit or all hits.
+/// Collects the hits of a ray query, such as the closest hit or all hits.
 pub trait HitCollector {
     type Answer: Default;
 
-    /// True if only the existence of a hit matters.
+    /// True if it only matters whether there is a hit.
     const ANY: bool;
 
     /// Records a hit at or before `t_max`, and returns the new `t_max`. Calling `facing` computes
     /// the side of the triangle.
     fn on_hit(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
-    /// Returns the result at the end of the traversal. `any` is true if it stopped at a hit.
+    /// Returns the result at the end of the traversal. `any` is true if the traversal stopped at a
+    /// hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
 }
 
 /// [`HitCollector`] that keeps the closest hit.
 pub struct ClosestHit {
-    /// Closest hit so far. Before the first hit, its triangle is [`NONE`].
+    /// Closest hit so far. Before the first hit, its triangle number is [`NONE`].
     best: TriangleHit,
 }
 
@@ -65,7 +66,7 @@ impl HitCollector for ClosestHit {
 
     #[inline(always)]
     fn on_hit(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
-        // The initial best hit has the greatest number.
+        // The initial value of the best hit has the greatest triangle number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
         }
@@ -117,8 +118,8 @@ impl HitCollector for AllHits {
     }
 }
 
-/// Caller's predicate that accepts or rejects hits. It may be called several times for a hit, and
-/// for hits that are not the closest.
+/// Predicate of the caller that accepts or rejects hits. It may be called several times for a hit,
+/// and for hits that are not the closest.
 pub type Filter<'a> = &'a mut dyn FnMut(&TriangleHit, Facing) -> bool;
 
 /// [`HitCollector`] that passes the hits that a filter accepts to another collector.
@@ -147,7 +148,7 @@ impl<F: HitCollector> HitCollector for Filtered<'_, F> {
 }
 
 impl RayInTree<'_> {
-    /// Corners of a triangle with permuted axes, and its number.
+    /// Returns the corners of a triangle with permuted axes, and the number of the triangle.
     #[inline(always)]
     fn triangle(&self, (rows, count): (&Rows, usize), lane: usize) -> ([Vec3A; 3], u32) {
         (CornerColumns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
@@ -184,7 +185,7 @@ impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     }
 }
 
-/// Traversal visitor that tests a ray against the triangles of leaves and passes hits to a
+/// Traversal visitor that tests a ray against the triangles of leaves and passes the hits to a
 /// collector.
 pub struct LeafTester<'a, T, F> {
     ray_in_tree: RayInTree<'a>,
@@ -268,14 +269,14 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for LeafTester<'_, T, F> {
         if F::ANY {
             let (start, end) = (lanes.splat(self.ray_in_tree.ray.t_min), lanes.splat(self.ray_in_tree.ray.t_max));
             let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
-            // Written so that NaN counts as uncertain.
+            // The condition is written so that NaN counts as uncertain.
             if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
                 return f32::NEG_INFINITY;
             }
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            // Without `black_box`, the compiler would compute this for every ray, even if it
-            // reaches no leaf.
+            // Without `black_box`, the compiler would compute this for every ray, even for rays
+            // that reach no leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
             let line = PreciseLine::new(lanes.triple(origin), lanes.triple(dir));

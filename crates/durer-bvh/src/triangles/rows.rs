@@ -1,22 +1,22 @@
-//! Layout of a leaf: nine rows with the coordinates of the corners, and a row with triangle
+//! Layout of a leaf: nine rows with the coordinates of the corners, and one row with triangle
 //! numbers.
 
 use crate::build::is_finite;
 use crate::lanes::ROWS;
 use crate::math::Vec3;
 
-/// Bit that makes a triangle number below 2^28 a normal `f32`. Arithmetic also runs on the lanes
-/// past the end of a row, and subnormal numbers would slow it down.
+/// Bit that turns a triangle number below 2^28 into a normal `f32`. Arithmetic also runs on the
+/// lanes beyond the end of a row, and subnormal numbers would slow it down.
 pub(super) const TAG: u32 = 1 << 30;
 
-/// Number of the triangle in a lane of a leaf of `count` triangles.
+/// Returns the number of the triangle in a lane of a leaf with `count` triangles.
 #[inline(always)]
 pub(super) fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
     rows[(ROWS - 1) * count + lane].to_bits() & !TAG
 }
 
-/// Writes a triangle into the rows of a leaf of `count` triangles. `rows` begins at the lane of the
-/// triangle. If a corner is not finite, all corners are set to NaN, so that no ray hits the
+/// Writes a triangle into the rows of a leaf with `count` triangles. `rows` begins at the lane of
+/// the triangle. If a corner is not finite, all corners are set to NaN so that no ray hits the
 /// triangle.
 pub(super) fn put(rows: &mut [f32], count: usize, number: u32, corners: [Vec3; 3]) {
     let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };

@@ -1,10 +1,10 @@
 //! Saves trees as bytes, and loads them.
 //!
-//! All numbers are little-endian. The format consists of a header with an eight-byte name, the
-//! version, the numbers of triangles, nodes, and items as `u64`, and the least volume; the nodes,
-//! field by field; the rows of the leaves; and a checksum of everything before it. All data is
-//! checked: in a tree that is accepted, no ray reads out of bounds, runs into a cycle, or overflows
-//! the stack.
+//! All numbers are little-endian. The format consists of a header, the nodes (field by field), the
+//! rows of the leaves, and a checksum of everything before it. The header contains an eight-byte
+//! name, the version, the numbers of triangles, nodes, and items as `u64`, and the minimum volume.
+//! All data is checked. If a tree is accepted, no ray reads out of bounds, runs into a cycle, or
+//! overflows the stack.
 
 use super::rows::TAG;
 use super::tree::TriangleBvh;
@@ -15,7 +15,7 @@ use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
 const NAME: &[u8; 8] = b"durerbvh";
 const VERSION: u32 = 1;
 const HEAD: usize = 8 + 4 + 3 * 8 + 8;
-/// Size of a node in bytes: planes, children, orders, first, and tags.
+/// Size of a node in bytes: planes, child codes, orders, first offset, and tags.
 const NODE: usize = 4 * (6 * WIDTH + WIDTH + 2 + 1) + WIDTH;
 const CHECKSUM: usize = 8;
 
@@ -55,15 +55,15 @@ impl TriangleBvh {
         to
     }
 
-    /// Deserialises a tree written by [`TriangleBvh::to_bytes`].
+    /// Deserialises a tree that [`TriangleBvh::to_bytes`] wrote.
     ///
-    /// Untrusted bytes are safe to load. Forged bytes are either rejected or give a tree whose
-    /// results are wrong, but queries do not panic or run forever.
+    /// It is safe to load untrusted bytes. Forged bytes are either rejected or result in a tree
+    /// that gives wrong results, but queries do not panic or run forever.
     ///
     /// # Errors
     ///
-    /// If the data is not a saved tree, has an unsupported version or a wrong length, or is
-    /// damaged.
+    /// Returns an error if the data is not a saved tree, has an unsupported version or a wrong
+    /// length, or is damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
         let Some((head, rest)) = bytes.split_at_checked(HEAD).filter(|(head, _)| head.starts_with(NAME)) else {
             return Err(LoadError::NotATree);
@@ -78,7 +78,7 @@ impl TriangleBvh {
         if count > node::MAX_ITEMS as u64 || items > node::MAX_ITEMS as u64 || nodes > node::MAX_NODES as u64 {
             return Err(LoadError::Invalid("it is too large"));
         }
-        // Computed in 64 bits, since the largest counts overflow a 32-bit `usize`.
+        // The length is computed in 64 bits because the largest counts overflow a 32-bit `usize`.
         let expected = (HEAD + CHECKSUM) as u64 + NODE as u64 * nodes + (4 * ROWS) as u64 * items;
         let [count, nodes, items] = [count, nodes, items].map(|count| count as usize);
         if expected != bytes.len() as u64 {
@@ -101,7 +101,7 @@ impl TriangleBvh {
     }
 }
 
-/// Reader of little-endian numbers from the bytes of a saved tree, which must be long enough.
+/// Reads little-endian numbers from the bytes of a saved tree, which must be long enough.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -130,13 +130,13 @@ impl Reader<'_> {
     }
 }
 
-/// Checks that the nodes form a tree whose leaves hold every item once, and that the items are
-/// triangles.
+/// Checks that the nodes form a tree whose leaves hold every item exactly once, and that the items
+/// are triangles.
 fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Result<(), &'static str> {
     if nodes.is_empty() != (items == 0) {
         return Err("nodes and leaves do not match");
     }
-    // Depth of each node, set when its parent is visited; 0 for the root.
+    // Depth of each node, which is set when its parent is visited. The root has depth 0.
     let mut depths = vec![None; nodes.len()];
     depths.iter_mut().take(1).for_each(|depth| *depth = Some(0));
     let mut is_taken = vec![false; items];
@@ -190,8 +190,8 @@ fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static st
     }
 }
 
-/// Checksum that detects damage, but not forgery: FNV-1a by Fowler, Noll, and Vo, modified to use
-/// eight-byte words, a rotation in each step, and the length at the end.
+/// Computes a checksum that detects damage but not forgery. It is FNV-1a by Fowler, Noll, and Vo,
+/// modified to use eight-byte words, a rotation in each step, and the length at the end.
 fn checksum(bytes: &[u8]) -> u64 {
     let step = |sum: u64, word: u64| (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
     let (words, rest) = bytes.as_chunks::<8>();
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Replaces the checksum by a valid one.
+    /// Replaces the checksum with a valid one.
     fn summed(mut bytes: Vec<u8>) -> Vec<u8> {
         let end = bytes.len() - CHECKSUM;
         let sum = checksum(&bytes[..end]);
@@ -256,7 +256,7 @@ mod tests {
             for _ in 0..rounds(1_500) {
                 let mut bytes = bytes.clone();
                 for _ in 0..1 + random.below(3) {
-                    // Change bits, replace words, and copy words from elsewhere, mostly in the
+                    // Changes bits, replaces words, and copies words from elsewhere, mostly in the
                     // header and the nodes.
                     let end = [HEAD, HEAD + NODE, bytes.len() - CHECKSUM][random.below(3)].min(bytes.len() - CHECKSUM);
                     let at = random.below(end / 4) * 4;
@@ -310,7 +310,7 @@ mod tests {
             assert_eq!(error(&bytes[..len]), LoadError::WrongLength { expected, actual: len });
         }
         assert!(matches!(error(&summed(with(12 + 7, 1))), LoadError::Invalid(_)));
-        // Numbers of nodes and items whose size is too large by a multiple of 2^32.
+        // Numbers of nodes and items whose total size is too large by a multiple of 2^32.
         let (nodes, items) = (1 + 10 * 4_400_582, (1 << 29) + 1 - 61 * 4_400_582);
         assert_eq!((NODE as u64 * (nodes - 1) + (4 * ROWS) as u64 * (items - 1)) % (1 << 32), 0);
         let mut wraps = bytes.clone();

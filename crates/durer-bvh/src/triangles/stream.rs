@@ -1,10 +1,10 @@
-//! Traces several incoherent rays through one tree in turn, one step at a time, to hide memory
-//! latency.
+//! Traces several incoherent rays through one tree in turn, one step at a time, in order to hide
+//! memory latency.
 //!
-//! A single ray often waits for a node from memory, for the result of a test, or after a
-//! mispredicted branch. Here several rays are in flight, and while one waits, the others proceed.
-//! Rays at inner nodes and rays at leaves are on separate lists, so no branch chooses between the
-//! two: each step writes its ray to both lists, but only one of them grows.
+//! A single ray often has to wait for a node from memory, for the result of a test, or after a
+//! mispredicted branch. Here several rays are in flight. While one of them waits, the others
+//! proceed. Rays at inner nodes and rays at leaves are on separate lists, so no branch chooses
+//! between the two. Each step writes its ray to both lists, but only one of the lists grows.
 
 use super::fetch::{CHILD_LINES, PrefetchAddresses};
 use super::query::{HitCollector, LeafTester};
@@ -18,18 +18,19 @@ use std::marker::PhantomData;
 
 /// Number of rays in flight.
 const IN_FLIGHT: usize = 16;
-/// Marker at the bottom of each stack. It differs from the codes of all leaves, since its items
-/// would be beyond the maximum.
+/// Marker at the bottom of each stack. It differs from the codes of all leaves because the item
+/// range that it encodes would exceed the maximum.
 const END: u32 = u32::MAX;
 
-/// Size of a tree in bytes below which most of it is in the cache, so that tracing rays one by one
-/// is faster.
+/// Size of a tree in bytes below which most of it is in the cache, so tracing rays one by one is
+/// faster.
 const MAX_CACHED_BYTES: usize = 8 << 20;
-/// Minimum number of rays for a stream. Fewer rays do not hide each other's latency.
+/// Minimum number of rays for a stream. With fewer rays, there are too few to hide each other's
+/// latency.
 const FEWEST: usize = 4;
 
 impl TriangleBvh {
-    /// Runs a query for each of the numbered rays.
+    /// Runs a query for each of the rays whose numbers are given.
     pub(super) fn trace_each<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
@@ -42,7 +43,7 @@ impl TriangleBvh {
         }
     }
 
-    /// Runs a query for each of the numbered rays, with several rays in flight.
+    /// Runs a query for each of the rays whose numbers are given, with several rays in flight.
     pub(super) fn stream<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
@@ -53,17 +54,18 @@ impl TriangleBvh {
     }
 }
 
-/// Kernel that traces the numbered rays with several of them in flight.
+/// Kernel that traces the rays whose numbers are given, with several of them in flight.
 struct Stream<'a, F, A> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
-    /// Numbers of the rays that are not yet started.
+    /// Numbers of the rays that have not started yet.
     numbers: std::slice::Iter<'a, u32>,
     answer: A,
     found: PhantomData<F>,
 }
 
-/// State of a ray that a [`Stream`] is tracing: its collector, `t_max`, and the next node or leaf.
+/// State of a ray that a [`Stream`] is tracing: its collector, its `t_max`, and the next node or
+/// leaf.
 struct InFlightRay<'a, F> {
     number: usize,
     boxes: TraversalRay,
@@ -72,7 +74,7 @@ struct InFlightRay<'a, F> {
     child: u32,
 }
 
-/// List of the slots of rays that are at inner nodes, or of those that are at leaves.
+/// List of the slots of rays that are at inner nodes, or of rays that are at leaves.
 struct List {
     numbers: [u8; 2 * IN_FLIGHT],
     len: usize,
@@ -81,7 +83,7 @@ struct List {
 impl List {
     const EMPTY: List = List { numbers: [0; 2 * IN_FLIGHT], len: 0 };
 
-    /// Appends `number` if `wanted`, without a branch.
+    /// Appends `number` if `wanted` is true, without a branch.
     #[inline(always)]
     fn add(&mut self, number: u8, wanted: bool) {
         self.numbers[self.len] = number;
@@ -90,8 +92,8 @@ impl List {
 }
 
 impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
-    /// Starts the next ray in a slot. Returns false if there is none. Rays that are not fast are
-    /// answered immediately.
+    /// Starts the next ray in a slot. Returns false if there are no more rays. Rays that are not
+    /// fast are traced immediately.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flight: &mut InFlightRay<'a, F>, stack: &mut Stack) -> bool {
         for &number in self.numbers.by_ref() {
@@ -124,7 +126,7 @@ fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut In
     let order = hits.node.order(F::ANY, flight.boxes.negative);
     let next = hits.next::<true>(lanes, F::ANY, extreme_bit(hits.mask, order != 0));
     hits.push(lanes, stack, next, order);
-    // If nothing was hit, nothing was pushed.
+    // If no child was hit, no child was pushed.
     flight.child = select_unpredictable(hits.mask == 0, stack.pop_if(hits.mask == 0), hits.child(next & SLOT_BITS));
 }
 
@@ -164,7 +166,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                 inner.add(number, flight.child & LEAF == 0);
                 leaves.add(number, flight.child & LEAF != 0);
             }
-            // Visit leaves when most rays are at one.
+            // Visit leaves when most rays are at a leaf.
             if inner.len >= leaves.len {
                 continue;
             }
@@ -181,7 +183,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                 if over {
                     (self.answer)(flight.number, flight.leaves.answer(flight.t_max));
                     if !self.start(lanes, flight, stack) {
-                        // The slot stays empty.
+                        // The slot remains empty.
                         continue;
                     }
                 } else {

@@ -1,4 +1,4 @@
-//! Tests of triangle trees against brute force, at every SIMD level and quality.
+//! Tests triangle trees against brute force, at every SIMD level and build quality.
 
 use super::*;
 use crate::BuildQuality;
@@ -11,10 +11,10 @@ mod heights;
 mod queries;
 mod reference;
 
-/// A mesh for tests: vertices, and the vertex indices of triangles.
+/// A test mesh: its vertices, and the vertex indices of its triangles.
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A torus whose neighbouring triangles have corners with the same bits.
+/// Returns a torus in which neighbouring triangles share corners with the same bits.
 pub fn torus(columns: u32, rows: u32) -> Mesh {
     let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
     let mut mesh: Mesh = Default::default();
@@ -30,7 +30,8 @@ pub fn torus(columns: u32, rows: u32) -> Mesh {
     mesh
 }
 
-/// A cube with `cuts`^2 squares per face. Rays along axes can lie in its faces and edges.
+/// Returns a cube with `cuts`^2 squares on each face. Axis-parallel rays can lie in its faces and
+/// edges.
 fn cube(cuts: u32) -> Mesh {
     let mut mesh: Mesh = Default::default();
     for face in 0..6 {
@@ -62,7 +63,8 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
     (vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// Small triangles, and long ones through all of them, some of which the build splits.
+/// Small triangles, and long ones that pass through all of them. The build splits some of the long
+/// ones.
 pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     let (mut vertices, mut triangles) = soup(random, small, 0.05);
     for i in 0..long {
@@ -74,7 +76,7 @@ pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     (vertices, triangles)
 }
 
-/// Meshes that are difficult for a tree, by name.
+/// Meshes that are difficult for a tree, each with a name.
 fn hard() -> Vec<(&'static str, Mesh)> {
     let mut random = Random(7);
     let grow = |i: u32| libm::pow(1.3, f64::from(i % 400) - 200.0) as f32;
@@ -108,8 +110,8 @@ fn scaled((vertices, triangles): &Mesh, scale: f32, offset: Vec3) -> Mesh {
     (vertices.iter().map(|v| scale * *v + offset).collect(), triangles.clone())
 }
 
-/// Rays of all kinds around a mesh: towards vertices, edges, and faces, along axes, short, long,
-/// and with special numbers.
+/// Rays of all kinds around a mesh: aimed at vertices, edges, and faces, parallel to axes, short,
+/// long, and with special numbers.
 pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Ray {
     let mut goal = offset + scale * random.point();
     if !triangles.is_empty() {
@@ -192,7 +194,7 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
     for distance in [0.0, 1e3, 1e6] {
         for (mesh, inside) in &shapes {
-            // The mesh stays closed, since shared corners are rounded in the same way.
+            // The mesh stays closed because shared corners are rounded in the same way.
             let offset = (distance * random.direction()).round();
             let scale = if distance > 1e5 { 64.0 } else { 1.0 };
             let mesh = scaled(mesh, scale, offset);
@@ -222,7 +224,8 @@ fn refitted_tree_finds_what_brute_force_finds() {
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
             let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
-            // In some rounds, some vertices are not finite. They become finite again later.
+            // In some rounds, some vertices have non-finite coordinates. Later they become finite
+            // again.
             match round {
                 2 => moved.0[50..250].fill(Vec3::NAN),
                 4 => moved.0[..100].fill(Vec3::new(0.0, f32::INFINITY, 1.0)),
@@ -240,7 +243,7 @@ fn refitted_tree_finds_what_brute_force_finds() {
     }
 }
 
-/// If sums of coordinates overflow, hits still have valid triangle numbers.
+/// Even if sums of coordinates overflow, hits have valid triangle numbers.
 #[test]
 fn largest_offsets_lead_to_triangles() {
     let mut random = Random(5);
@@ -256,8 +259,8 @@ fn largest_offsets_lead_to_triangles() {
     }
 }
 
-/// A bundle of neighbouring rays, parallel or through one point, towards corners, edges, and faces.
-/// It often spans several octants, and some rays have special values.
+/// Returns a bundle of neighbouring rays, either parallel or through one point, aimed at corners,
+/// edges, and faces. It often spans several octants, and some rays have special values.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);
@@ -300,21 +303,21 @@ fn batches_answer_like_single_rays() {
                 SimdLevel::available().map(|level| tree.clone().at_level(level)).chain([culls_slivers]).collect();
             for round in 0..rounds(4) {
                 let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();
-                // Few rays suffice for large meshes.
+                // A few rays are enough for large meshes.
                 rays.truncate(if mesh.1.len() > 5_000 { 40 } else { rays.len() });
                 if round == 0 && mesh.1.len() < 5_000 {
                     rays = (0..100).map(|_| ray(&mesh, &mut random, scale, offset)).collect();
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // Also pass the rays in parts, since after incoherent rays, some rays skip the
+                    // Also pass the rays in parts, because after incoherent rays some rays skip the
                     // coherence test.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
                         .zip(occluded.chunks_mut(part))
                         .for_each(|(rays, to)| tree.occluded_batch(rays, to));
-                    // Also trace the rays as a stream, as in a large tree.
+                    // Also trace the rays as a stream, which large trees do.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
                     tree.stream::<ClosestHit>(&rays, &numbers, |i, hit| streamed[i] = hit);
                     tree.stream::<AnyHit>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));
@@ -343,7 +346,7 @@ fn axis_parallel_rays_go_together_and_hit_correctly() {
         let (length, away) = ([1e-6, -1.0, 1.0, -1e14][k % 4], [4.0, 1e4][k / 2 % 2]);
         let mut dir = Vec3::splat(small);
         dir[axis] = length;
-        // Through a vertex and just past it.
+        // One ray goes through a vertex and another just past it.
         let beside = |i: usize| {
             let mut at = *corner - away * length.signum() * Vec3::AXES[axis];
             at[(axis + 1) % 3] += 0.01 * (i % 8) as f32;
@@ -372,8 +375,8 @@ fn axis_parallel_rays_go_together_and_hit_correctly() {
 
 #[test]
 fn zeros_of_either_sign_are_the_same_ray_origin() {
-    // Around the origin, so that corners also have zeros of either sign, and rays run through edges
-    // and vertices.
+    // The mesh is around the origin, so that corners also have zeros of either sign and rays run
+    // through edges and vertices.
     let mut mesh = cube(8);
     for (i, at) in mesh.0.iter_mut().flat_map(|at| at.as_mut()).enumerate() {
         *at = if *at == 0.0 && i % 2 == 0 { -0.0 } else { *at };
@@ -408,7 +411,7 @@ fn zeros_of_either_sign_are_the_same_ray_origin() {
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "no threads there")]
 fn a_tree_is_a_function_of_its_triangles() {
-    // Large enough that every step runs in parallel.
+    // The mesh is large enough for every step to run in parallel.
     let (soup, bars) = (soup(&mut Random(5), 40_000, 0.05), bars(&mut Random(5), 20_000, 1_000));
     for (mesh, (name, quality)) in
         [&soup, &bars].into_iter().flat_map(|mesh| BuildQuality::NAMES.map(|named| (mesh, named)))

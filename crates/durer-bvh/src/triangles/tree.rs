@@ -9,7 +9,7 @@ use glam::Vec3A;
 use std::mem::MaybeUninit;
 use std::sync::{Arc, OnceLock};
 
-/// Intersection of a ray with a triangle of a mesh, returned by the queries of [`TriangleBvh`].
+/// Intersection of a ray with a triangle of a mesh, as returned by the queries of [`TriangleBvh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// Position along the ray, in units of the length of its direction.
@@ -20,17 +20,16 @@ pub struct TriangleHit {
     pub triangle: u32,
 }
 
-/// A bounding volume hierarchy over the triangles of a mesh, which it stores. It can be used
-/// without a scene.
+/// A bounding volume hierarchy that stores the triangles of a mesh. It can be used without a scene.
 ///
 /// A ray through an edge or a vertex crosses exactly one of the triangles that meet there, as if it
-/// were moved sideways by an infinitesimal distance. No ray slips through a closed mesh, and
-/// [`TriangleBvh::hit_count`] is exact. Triangles are hit from both sides. If several hits have the
-/// same `t`, the one with the lowest triangle number is the closest. All results have the same bits
-/// for all build qualities, SIMD levels, and numbers of threads.
+/// were shifted sideways by an infinitesimal distance. No ray passes through a gap in a closed
+/// mesh, and [`TriangleBvh::hit_count`] is exact. Triangles are hit from both sides. If several
+/// hits have the same `t`, the one with the lowest triangle number counts as the closest. All
+/// results have the same bits for all build qualities, SIMD levels, and numbers of threads.
 ///
-/// A ray that is NaN or infinite, or has no direction, hits nothing. Directions need not have
-/// length 1.
+/// A ray that contains NaN or infinity, or that has no direction, hits nothing. Directions do not
+/// have to have length 1.
 ///
 /// ```
 /// use durer_bvh::{BuildQuality, TriangleBvh};
@@ -48,44 +47,45 @@ pub struct TriangleHit {
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     pub(super) nodes: Vec<WideNode>,
-    /// Triangles of the leaves. A leaf has [`ROWS`] rows, each as long as its number of triangles:
-    /// the coordinates of the corners, then the triangle numbers as bits. The list is padded by the
-    /// size of a leaf.
+    /// Triangles in the leaves. A leaf has [`ROWS`] rows, each as long as its number of triangles.
+    /// They hold the coordinates of the corners, and then the triangle numbers as bit patterns. The
+    /// list has padding as long as a leaf at its end.
     pub(super) leaves: Vec<f32>,
     pub(super) bounds: Aabb,
-    /// Largest absolute coordinate.
+    /// Largest absolute value of any coordinate.
     pub(super) reach: f32,
     pub(super) level: AvailableLevel,
     pub(super) min_volume: f64,
     /// True if `min_volume` is not zero.
     pub(super) culls_slivers: bool,
-    /// Number of triangles at build time.
+    /// Number of triangles when the tree was built.
     pub(super) count: usize,
-    /// A leaf that contains each triangle, by triangle number; computed on first use.
+    /// For each triangle number, a leaf that contains the triangle. The list is computed on first
+    /// use.
     pub(super) leaf_of: OnceLock<Vec<u32>>,
-    /// Grid for leaves whose rows are not in memory.
+    /// Grid that provides the leaves whose rows are not in memory.
     pub(super) heights: Option<Arc<HeightGrid>>,
 }
 
 /// Side of a triangle that a ray hits, passed to filters of ray queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// Side from which the corners appear in counter-clockwise order: (b - a) x (c - a) points
-    /// towards the origin of the ray.
+    /// Side from which the corners appear in counter-clockwise order, so that (b - a) x (c - a)
+    /// points towards the origin of the ray.
     Front,
     /// Opposite side.
     Back,
 }
 
 impl Facing {
-    /// Side of a triangle that the ray crosses. Uses the exact signs of the crossing test, so that
-    /// the sides of a closed mesh alternate along a ray.
+    /// Returns the side of a triangle that the ray crosses. This method uses the exact signs of the
+    /// crossing test, so the sides of a closed mesh alternate along a ray.
     #[inline]
     pub(super) fn of(ray: &WatertightRay, corners: [Vec3A; 3]) -> Self {
         if ray.is_front(corners) { Facing::Front } else { Facing::Back }
     }
 
-    /// Flips the side if `turned`.
+    /// Flips the side if `turned` is true.
     pub(crate) fn turned_if(self, turned: bool) -> Self {
         match (self, turned) {
             (side, false) => side,
@@ -112,13 +112,13 @@ impl TriangleBvh {
         }
     }
 
-    /// Rows of a leaf and its number of triangles. Rows that are not in memory are written to
-    /// `room`.
+    /// Returns the rows of a leaf and its number of triangles. Rows that are not in memory are
+    /// written to `room`.
     #[inline(always)]
     pub(super) fn rows<'a>(&'a self, leaf: u32, room: &'a mut MaybeUninit<Rows>) -> (&'a Rows, usize) {
         let (first, count) = node::items(leaf);
-        // Because of the padding, the slice is long enough for any leaf in memory. Blocks of
-        // heights have higher numbers.
+        // The padding makes the slice long enough for any leaf in memory. Blocks of heights have
+        // higher item numbers.
         let rows = match self.leaves.get(ROWS * first..) {
             Some(rest) => rest.first_chunk(),
             None => None,

@@ -1,17 +1,19 @@
-//! Watertight ray-triangle intersection: a ray never slips between two triangles that share an
-//! edge, and crosses exactly one of the triangles around an edge or a vertex.
+//! Watertight ray-triangle intersection. A ray never slips between two triangles that share an
+//! edge, and it crosses exactly one of the triangles around an edge or a vertex.
 //!
-//! A shear aligns the ray with one axis. The ray crosses the triangle if the projected edges wind
-//! around the origin. Corners that two triangles share are rounded in the same way, and the sign of
-//! each edge function is exact, so neighbours never disagree. If the ray passes through an edge,
-//! the result is that of a ray moved by an infinitesimal (e, e^2) in the plane across it.
+//! A shear transform aligns the ray with one axis. The ray crosses the triangle if the projected
+//! edges wind around the origin. Corners that two triangles share are rounded in the same way, and
+//! the sign of each edge function is exact, so neighbouring triangles never disagree. If the ray
+//! passes through an edge, the result is that of a ray moved by an infinitesimal (e, e^2) in the
+//! plane perpendicular to it.
 //!
-//! Single precision decides if a triangle is crossed, and double precision computes the distance.
-//! Therefore a ray whose origin is rounded to one side of a triangle is handled as starting on that
-//! side, however close to it.
+//! Single precision decides whether a triangle is crossed, and double precision is used to compute
+//! the distance. Therefore, if rounding puts the origin of a ray on one side of a triangle, the ray
+//! starts on that side, however close the origin is to the triangle.
 //!
-//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. The
-//! infinitesimal is from Edelsbrunner and Mücke, *Simulation of Simplicity*, ACM TOG 9(1), 1990.
+//! Source: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. The
+//! infinitesimal is taken from Edelsbrunner and Mücke, *Simulation of Simplicity*, ACM TOG 9(1),
+//! 1990.
 
 use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
 use glam::Vec3A;
@@ -19,7 +21,7 @@ use glam::Vec3A;
 #[cfg(test)]
 mod tests;
 
-/// Point where a ray crosses a single triangle; the result of [`WatertightRay::intersect`].
+/// Point where a ray crosses a single triangle, as returned by [`WatertightRay::intersect`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Position along the ray.
@@ -38,13 +40,13 @@ pub struct WatertightRay {
     axes: &'static AxisOrder,
     origin: Vec3A,
     dir: Vec3A,
-    /// Direction divided by its third component.
+    /// Direction of the ray divided by its third component.
     shear: Vec3A,
     min_volume: f64,
 }
 
 impl WatertightRay {
-    /// Prepares a ray. A ray without a direction, or with an infinite one, hits nothing.
+    /// Prepares a ray. A ray with a zero or infinite direction hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let axes = axis_order(ray.dir.into());
@@ -54,19 +56,21 @@ impl WatertightRay {
         WatertightRay { shear, ..sheared }
     }
 
-    /// Creates a ray with a finite direction from an origin and a direction that are permuted
-    /// already, by the axes of [`axis_order`].
+    /// Creates a ray with a finite direction from an origin and a direction whose axes
+    /// [`axis_order`] has already permuted.
     #[inline(always)]
     pub(crate) fn permuted(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
         WatertightRay { axes, origin, dir, shear: dir / dir.z, min_volume: 0.0 }
     }
 
-    /// Sets the least |(b - a) x (c - a) · d| of a triangle that the ray with direction d can hit.
+    /// Sets the smallest |(b - a) x (c - a) · d| of a triangle that the ray with direction d can
+    /// hit.
     pub fn min_volume(self, min_volume: f64) -> Self {
         WatertightRay { min_volume, ..self }
     }
 
-    /// Crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
+    /// Returns the crossing with a triangle in the open interval (`t_min`, `t_max`), from either
+    /// side.
     #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
         let corners = corners.map(|corner| permuted(self.axes, corner.as_ref()));
@@ -74,11 +78,12 @@ impl WatertightRay {
             return None;
         }
         let t = self.t(corners)?;
-        // Rejects NaN, too.
+        // The comparison also rejects NaN.
         (t > t_min && t < t_max).then(|| Crossing { t, uv: self.uv(corners) })
     }
 
-    /// Returns true if the line of the ray crosses the triangle. False if the triangle is edge-on.
+    /// Returns true if the line of the ray crosses the triangle. Returns false if the triangle is
+    /// edge-on.
     pub(crate) fn crosses(&self, corners: [Vec3A; 3]) -> bool {
         let flat @ [a, b, c] = self.flatten(corners);
         let front = is_front(b, c);
@@ -90,17 +95,17 @@ impl WatertightRay {
         det != 0.0 && !det.is_nan()
     }
 
-    /// Returns true if the ray hits the front of a triangle that it crosses. From the front, the
-    /// corners are in counter-clockwise order.
+    /// Returns true if the ray hits the front of a triangle that it crosses. Seen from the front,
+    /// the corners are in counter-clockwise order.
     pub(crate) fn is_front(&self, corners: [Vec3A; 3]) -> bool {
         let [a, b, c] = areas(self.flatten(corners).map(doubles));
-        // No two of the three areas have opposite signs. The axis order accounts for a direction
+        // No two of the three areas have opposite signs. The axis order compensates for a direction
         // whose longest component is negative.
         a + b + c > 0.0
     }
 
-    /// Second and third barycentric coordinates of the crossing with a triangle that the ray
-    /// crosses.
+    /// Returns the second and third barycentric coordinates of the crossing with a triangle that
+    /// the ray crosses.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
         let [u, v] = uv_across(self.flatten(corners).map(doubles));
@@ -112,7 +117,7 @@ impl WatertightRay {
         [self.flat(a), self.flat(b), self.flat(c)]
     }
 
-    /// Projects a corner onto the plane across the ray.
+    /// Projects a corner onto the plane perpendicular to the ray.
     #[inline(always)]
     fn flat(&self, corner: Vec3A) -> Vec2 {
         let p = corner - self.origin;
@@ -131,24 +136,24 @@ impl WatertightRay {
         Some(t as f32)
     }
 
-    /// Order of the axes in permuted vectors.
+    /// Returns the order of the axes in permuted vectors.
     pub(crate) fn axes(&self) -> &'static AxisOrder {
         self.axes
     }
 
-    /// Origin and direction with permuted axes.
+    /// Returns the origin and direction with permuted axes.
     pub(crate) fn ray(&self) -> (Vec3A, Vec3A) {
         (self.origin, self.dir)
     }
 
-    /// Sideways displacement of a corner per unit along the third axis.
+    /// Returns the sideways displacement of a corner per unit along the third axis.
     pub(crate) fn shear(&self) -> Vec2 {
         Vec2::new(self.shear.x, self.shear.y)
     }
 }
 
-/// Plane of a triangle with permuted axes, for computing `t` in double precision; one plane, or
-/// several in SIMD lanes.
+/// Plane of a triangle with permuted axes, for computing `t` in double precision. It holds one
+/// plane or several in SIMD lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct Plane<V: Triple> {
     pub normal: V,
@@ -172,13 +177,13 @@ impl Plane<[f64; 3]> {
     }
 }
 
-/// Line of a ray with permuted axes, for computing `t` in double precision; one line, or several in
-/// SIMD lanes. Its methods are branchless.
+/// Line of a ray with permuted axes, for computing `t` in double precision. It holds one line or
+/// several in SIMD lanes. Its methods have no branches.
 #[derive(Clone, Copy)]
 pub(crate) struct PreciseLine<V: Triple> {
     origin: V,
     dir: V,
-    /// 1 over the third component of the direction.
+    /// 1 divided by the third component of the direction.
     inverse: V::Component,
 }
 
@@ -197,7 +202,7 @@ impl<V: Triple<Component = f64>> PreciseLine<V> {
 }
 
 impl<V: Triple> PreciseLine<V> {
-    /// Creates the line. `inverse` is 1 over the third component of the direction.
+    /// Creates the line. `inverse` is 1 divided by the third component of the direction.
     #[inline(always)]
     pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
         PreciseLine { origin, dir, inverse }
@@ -206,9 +211,10 @@ impl<V: Triple> PreciseLine<V> {
     /// Computes `t` of the crossing with a triangle that the line crosses, and the signed volume (b
     /// - a) x (c - a) · d.
     ///
-    /// `t` is the intersection with the plane, clamped to the range between the lowest and highest
-    /// corner. So `t` stays within the triangle even if it is nearly edge-on or the division gives
-    /// NaN. Rounding of products is monotonic, so the distances of all corners are in that range.
+    /// `t` belongs to the intersection with the plane, clamped to the range between the lowest and
+    /// highest corner. The clamping keeps `t` within the triangle even if the triangle is nearly
+    /// edge-on or the division results in NaN. Rounding of products is monotonic, so the distances
+    /// of all corners lie in that range.
     #[inline(always)]
     pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
         let volume = plane.normal.dot(self.dir);
@@ -220,30 +226,32 @@ impl<V: Triple> PreciseLine<V> {
     }
 }
 
-/// Second and third barycentric coordinates of the origin, from the corners of a triangle projected
-/// along a ray that crosses it; for one triangle, or several in SIMD lanes.
+/// Returns the second and third barycentric coordinates of the origin, given the corners of a
+/// triangle projected along a ray that crosses it. It works for one triangle or for several in SIMD
+/// lanes.
 #[inline(always)]
 pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     let [a, b, c] = areas(flat);
-    // The three areas do not differ in sign, so their sum is as exact as they are.
+    // The three areas do not differ in sign, so their sum is as accurate as the areas are.
     let det = a.add(b).add(c);
     [b.div(det), c.div(det)]
 }
 
-/// Permutation of axes for a ray: the axes that become the first, second, and third. The fourth
-/// entry is padding.
+/// Permutation of axes for a ray, given by the axes that become the first, second, and third axis.
+/// The fourth entry is only padding.
 pub(crate) type AxisOrder = [u32; 4];
 
-/// Axis order of a ray, by the longest component of its direction and its sign (1 if negative).
+/// Returns the axis order of a ray, given the longest component of its direction and its sign (1 if
+/// negative).
 #[inline(always)]
 pub(crate) const fn axis_order_for(longest: usize, negative: usize) -> AxisOrder {
     const AXES: [[AxisOrder; 2]; 4] =
         [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
-    // The masks remove bounds checks.
+    // The masks make bounds checks unnecessary.
     AXES[longest & 3][negative & 1]
 }
 
-/// Axis order of a ray with direction `dir`.
+/// Returns the axis order of a ray with direction `dir`.
 #[inline(always)]
 pub(crate) fn axis_order(dir: Vec3A) -> &'static AxisOrder {
     let length = dir.abs();
@@ -251,8 +259,8 @@ pub(crate) fn axis_order(dir: Vec3A) -> &'static AxisOrder {
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
 }
 
-/// Axis orders, by a mask of the longest components of the direction (the last one counts) and a
-/// mask of the negative ones.
+/// Axis orders, indexed by a mask of the longest components of the direction (the last one counts)
+/// and a mask of the negative ones.
 static TURNED: [[AxisOrder; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
@@ -269,39 +277,41 @@ fn permuted([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
     Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 
-/// Converts a point in the plane across a ray to double precision.
+/// Converts a point in the plane perpendicular to a ray to double precision.
 fn doubles(p: Vec2) -> [f64; 2] {
     [f64::from(p.x), f64::from(p.y)]
 }
 
-/// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric
-/// coordinates.
+/// Returns twice the areas of the triangles from the origin to the three edges. These are
+/// unnormalised barycentric coordinates.
 #[inline(always)]
 fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
 }
 
-/// Edge function of the edge from `p` to `q` at the origin. Products of two `f32` are exact in
-/// `f64`.
+/// Returns the edge function of the edge from `p` to `q` at the origin. Products of two `f32` are
+/// exact in `f64`.
 #[inline(always)]
 fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
     q[0].mul(p[1]).sub(q[1].mul(p[0]))
 }
 
-/// Returns true if the edge from `p` to `q` runs clockwise around the origin: the sign of the edge
-/// function, never zero.
+/// Returns true if the edge from `p` to `q` runs clockwise around the origin. This is the sign of
+/// the edge function, which is never treated as zero.
 #[inline(always)]
 fn is_front(p: Vec2, q: Vec2) -> bool {
     let value = q.x * p.y - q.y * p.x;
-    // Rounding is monotonic: the difference of two rounded products has the sign of the exact one.
+    // Rounding is monotonic, so the difference of two rounded products has the sign of the exact
+    // difference.
     if value.abs() > 0.0 && value.abs() < f32::INFINITY { value > 0.0 } else { is_front_exact(p, q) }
 }
 
-/// Computes [`is_front`] if single precision gives zero or overflows.
+/// Computes [`is_front`] if the result in single precision is zero or overflows.
 #[cold]
 fn is_front_exact(p: Vec2, q: Vec2) -> bool {
-    // Coefficients of the edge function at (e, e^2), largest term first: 1, e, e^2. Differences are
-    // computed in double precision, since they might underflow in single precision.
+    // Coefficients of the edge function at (e, e^2), with the largest term first: 1, e, e^2.
+    // Differences are computed in double precision because they might underflow in single
+    // precision.
     let [p, q] = [doubles(p), doubles(q)];
     [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
 }

@@ -4,11 +4,11 @@
 use super::*;
 use crate::math::random::Random;
 
-/// The triangles of a mesh, by their corners.
+/// The triangles of a mesh, given by their corners.
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A surface of `columns` by `rows` squares. `point` maps grid points to corners, so neighbouring
-/// triangles share corners with the same bits.
+/// Returns a surface with `columns` by `rows` squares. `point` maps grid points to corners, so
+/// neighbouring triangles share corners with the same bits.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -26,7 +26,7 @@ fn turn(i: usize, count: usize) -> (f32, f32) {
     (sin as f32, cos as f32)
 }
 
-/// Closed meshes, each with a flag for convex ones and a point inside.
+/// Closed meshes, each with a flag that is true if it is convex, and a point inside it.
 fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     let ball = sheet(16, 8, |i, j| {
         let ((s, c), (t, d)) = (turn(i, 16), turn(j, 16));
@@ -45,7 +45,7 @@ fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     vec![(ball, true, Vec3::ZERO), (cube.collect(), true, Vec3::ZERO), (torus, false, Vec3::new(0.7, 0.0, 0.0))]
 }
 
-/// A vertex, the midpoint of an edge, a point of an edge, or the centre of a face.
+/// Returns a vertex, the midpoint of an edge, a point on an edge, or the centre of a face.
 fn target(mesh: &Triangles, random: &mut Random) -> Vec3 {
     let [a, b, c] = mesh[random.below(mesh.len())];
     match random.below(4) {
@@ -67,15 +67,17 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     for (mesh, convex, inside) in meshes() {
         let mut through = 0;
         for distance in [0.0, 10.0, 1e3, 1e4, 1e5] {
-            // The mesh stays closed, since shared corners are rounded in the same way.
+            // The mesh stays closed because shared corners are rounded in the same way.
             let offset = (distance * random.direction()).round();
-            // Far away, a convex mesh is no longer convex after rounding of its corners.
+            // Far from the origin, a convex mesh is no longer convex once its corners have been
+            // rounded.
             let convex = convex && distance <= 10.0;
             let moved: Triangles = mesh.iter().map(|corners| corners.map(|p| p + offset)).collect();
             for round in 0..1_500 {
                 let goal = target(&moved, &mut random);
                 let outside = offset + [3.0, 100.0, 1e4][round % 3] * random.direction();
-                // Along an axis every other time: such rays may lie in the faces of the cube.
+                // Every other ray is parallel to an axis. Such rays may lie in the faces of the
+                // cube.
                 let mut dir = random.between(0.1, 10.0) * (goal - outside);
                 let mut from = outside;
                 if round % 2 == 0 {
@@ -111,7 +113,7 @@ fn exactly_one_triangle_of_a_fan_is_hit_at_its_center_and_spokes() {
         let fan: Triangles = (0..count).map(|i| [middle, rim[i], rim[(i + 1) % count]]).collect();
         let spoke = rim[random.below(count)];
         let goal = middle + [0.0, 0.5, random.between(0.01, 0.99)][round % 3] * (spoke - middle);
-        // Start above the fan, so that all its triangles face the ray with the same side.
+        // Start above the fan so that all its triangles face the ray with the same side.
         let from = goal + Vec3::new(random.between(-1.0, 1.0), 3.0, random.between(-1.0, 1.0));
         for ray in [Ray::new(from, goal - from), Ray::new(goal + 3.0 * Vec3::Y, Vec3::NEG_Y)] {
             assert_eq!(crossed(&fan, &ray), 1, "{fan:?} {ray:?}");

@@ -1,10 +1,10 @@
-//! Changes to a scene file made by `durer check --fix`.
+//! Changes that `durer check --fix` makes to a scene file.
 
 /// A change that `durer check --fix` made to a scene file, with the code of the finding that it
 /// fixes.
 pub struct Change {
     pub code: &'static str,
-    /// Position in the text at the time of the change, for JSON.
+    /// Position in the text when the change was made, for JSON.
     pub place: serde_json::Value,
     pub at: String,
     pub old: String,

@@ -1,4 +1,4 @@
-//! Reads and checks one scene.
+//! Reads a scene and checks it.
 
 use super::args::CheckArgs;
 use crate::failure::Failure;
@@ -11,12 +11,13 @@ use durer::load_text;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A scene file after `durer check`: its files, its findings, and whether it can be rendered.
+/// A scene file after `durer check`: the files it uses, its findings, and whether it can be
+/// rendered.
 pub struct CheckedScene {
     pub path: PathBuf,
     pub files: Files,
     pub findings: Vec<Finding>,
-    /// Dialect; `None` if the scene could not be read.
+    /// Dialect of the scene, or `None` if the scene could not be read.
     pub dialect: Option<&'static str>,
     /// True if the scene can be rendered.
     pub readable: bool,
@@ -31,7 +32,7 @@ impl CheckedScene {
     }
 }
 
-/// Reads and checks the text of a scene file. The text need not be saved yet.
+/// Reads and checks the text of a scene file. The text does not have to be saved yet.
 pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedScene, Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);

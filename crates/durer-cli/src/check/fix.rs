@@ -1,4 +1,5 @@
-//! `durer check --fix`: applies one edit after the other and keeps those that remove their finding.
+//! Implements `durer check --fix`, which applies one edit after another and keeps those that remove
+//! their finding.
 
 use super::args::CheckArgs;
 use super::change::Change;
@@ -41,7 +42,7 @@ pub fn apply_fixes(
 /// Maximum number of findings whose edits are tried before they are offered to the user.
 const MAX_TRIED: usize = 8;
 
-/// Removes edits that `--fix` would not keep from the findings.
+/// Removes edits from the findings if `--fix` would not keep them.
 pub fn remove_useless_fixes(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
     let mut needed = Vec::new();
@@ -59,8 +60,8 @@ pub fn remove_useless_fixes(checked: &mut CheckedScene, text: &[u8], args: &Chec
     Ok(())
 }
 
-/// Returns true if `finding` is gone and nothing is worse: no new error, and no new finding about
-/// the whole picture that comes earlier in causal order.
+/// Returns true if `finding` is gone and nothing has become worse. That means there is no new
+/// error, and no new finding about the whole picture that comes earlier in the causal order.
 fn is_better(before: &CheckedScene, after: &CheckedScene, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;
     let errors = |checked: &CheckedScene| checked.count(|f| f.diagnostic.severity == Severity::Error);

@@ -1,4 +1,4 @@
-//! Output of `durer check --json`; `durer check --help` describes its form.
+//! Output of `durer check --json`. The help text of `durer check` describes its form.
 
 use super::change::Change;
 use super::checked_scene::CheckedScene;
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// Version of the JSON form.
 const VERSION: u32 = 1;
 
-/// Returns the document for the checked scenes and their changes.
+/// Returns the JSON document for the checked scenes and their changes.
 pub fn document(all: &[(CheckedScene, Vec<Change>)]) -> Value {
     let scene = |(checked, changes): &(CheckedScene, Vec<Change>)| {
         json!({

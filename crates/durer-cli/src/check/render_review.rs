@@ -14,7 +14,7 @@ use durer::render::{Job, Statistics};
 /// Maximum number of findings printed.
 const MAX_PRINTED: usize = 3;
 
-/// Returns the scan of the first picture, if it is the colour picture.
+/// Returns the scan of the first picture if it is the colour picture.
 pub fn scan(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan> {
     let color = pictures.first().filter(|_| job.color)?;
     let mut scan = PictureScan::new(exposure);
@@ -22,7 +22,7 @@ pub fn scan(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan>
     Some(scan)
 }
 
-/// Reports a visible fault of a picture from `durer render`, with its likely causes.
+/// Reports a visible fault in a picture from `durer render`, together with its likely causes.
 pub fn after_render(
     compiled: &CompiledInput,
     job: &Job,
@@ -31,20 +31,20 @@ pub fn after_render(
     statistics: &Statistics,
     display: Display,
 ) {
-    // A tone curve maps values above white back into range.
+    // A tone curve maps values above white back into the displayable range.
     let is_odd = |oddity: &PictureFault| display.tone == Tone::default() || *oddity != PictureFault::White;
     RenderReview { compiled, job, statistics, exposure: display.exposure }.review(scan, pictures, is_odd);
 }
 
-/// Reports black or single-colour pictures from `durer course`. No scene of any year is meant to
-/// give such a picture.
+/// Reports pictures from `durer course` that are black or have a single colour. No course scene of
+/// any year is meant to produce such a picture.
 pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &PictureFault| matches!(oddity, PictureFault::Black | PictureFault::OneColor);
     let scan = scan(job, pictures, 1.0);
     RenderReview { compiled, job, statistics, exposure: 1.0 }.review(scan.as_ref(), pictures, is_odd);
 }
 
-/// A finished render and its scene, to be checked if the picture looks wrong.
+/// A finished render and its scene, which is checked if the picture looks wrong.
 struct RenderReview<'a> {
     compiled: &'a CompiledInput,
     job: &'a Job,
@@ -60,7 +60,7 @@ impl RenderReview<'_> {
         }
     }
 
-    /// Warns if a depth picture with a range set by the user has no grey pixels.
+    /// Warns if a depth picture has no grey pixels although the user set its range.
     fn depths(&self, pictures: &[Layer]) {
         let is_requested = self.job.depth_range.is_some();
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };
@@ -77,7 +77,7 @@ impl RenderReview<'_> {
         let input = CheckInput { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
         let found = check(&input, &self.compiled.diagnostics);
         let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
-        // Skip findings that were printed before the render.
+        // Skip findings that were already printed before the render.
         let is_known = |diagnostic: &Diagnostic| {
             let same = |known: &Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
             self.compiled.diagnostics.iter().any(same)

@@ -9,9 +9,9 @@ use durer::mistakes::Diagnosis;
 /// Result of comparing one pair of pictures in `durer compare`.
 pub enum Outcome {
     Compared(Box<Comparison>),
-    /// There is no picture for the reference.
+    /// There is no picture to compare with the reference.
     Missing,
-    /// The pictures cannot be compared, for the given reason.
+    /// The pictures cannot be compared. The string states the reason.
     Failed(String),
 }
 
@@ -19,19 +19,19 @@ pub enum Outcome {
 pub struct ComparedPair {
     pub pair: Pair,
     pub outcome: Outcome,
-    /// Pictures for the report, if one is written.
+    /// Pictures for the report, if a report is written.
     pub pictures: Option<PairPictures>,
-    /// For each region, the hit of the ray through the pixel that differs most; empty without a
-    /// scene.
+    /// For each region, the hit of the ray through the pixel that differs most. The list is empty
+    /// if there is no scene.
     pub hits: Vec<PixelHit>,
-    /// Result of the search for mistakes; `None` without a scene.
+    /// Result of the search for mistakes, or `None` if there is no scene.
     pub diagnosis: Option<Diagnosis>,
-    /// Note on the inferred options of the reference, if they were inferred.
+    /// Note about the options of the reference if they were inferred.
     pub note: Option<String>,
 }
 
 impl ComparedPair {
-    /// Creates a compared pair without hits and diagnosis.
+    /// Creates a compared pair without hits or a diagnosis.
     pub fn new(pair: Pair, outcome: Outcome, pictures: Option<PairPictures>) -> Self {
         ComparedPair { pair, outcome, pictures, hits: Vec::new(), diagnosis: None, note: None }
     }
@@ -45,7 +45,8 @@ impl ComparedPair {
         }
     }
 
-    /// Returns the names of the mistakes that explain the difference; empty if there are none.
+    /// Returns the names of the mistakes that explain the difference. The list is empty if there
+    /// are none.
     pub fn mistakes(&self) -> String {
         let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
             (_, Some(diagnosis)) => diagnosis
@@ -63,7 +64,7 @@ impl ComparedPair {
         all.join(" + ")
     }
 
-    /// Returns the verdict as one word.
+    /// Returns the verdict as a single word.
     pub fn verdict(&self) -> &'static str {
         match &self.outcome {
             Outcome::Compared(comparison) => comparison.verdict.name(),
@@ -80,12 +81,12 @@ pub struct PairPictures {
     pub heat: String,
 }
 
-/// Returns the name of a pair, with the student's name in front.
+/// Returns the name of a pair, preceded by the student's name.
 pub fn name(pair: &Pair) -> String {
     pair.student.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
-/// Explains a difference from the pictures alone; one line per cause.
+/// Explains a difference from the pictures alone, with one line per cause.
 fn explained(comparison: &Comparison) -> Vec<String> {
     if comparison.verdict != Verdict::Different {
         return Vec::new();
@@ -100,7 +101,7 @@ fn explained(comparison: &Comparison) -> Vec<String> {
     let line = |(i, finding): (usize, &Finding)| {
         let percent = mistakes::percent(finding.explained);
         match i {
-            // The place of a difference does not explain it.
+            // The location of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
                 format!("{} ({percent} of the squared difference is there)", finding.description)
             }

@@ -14,7 +14,7 @@ pub fn find_mistakes(stage: &ReferenceScene, reference: &Picture, test: &Picture
     progress::show_progress("trying mistakes", |share| diagnose(&input, share))
 }
 
-/// Formats a diagnosis as lines: the mistake first, then the code.
+/// Formats a diagnosis as lines, with the mistake first and the code after it.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     if !diagnosis.reference_matches_scene() {
         return vec![format!(

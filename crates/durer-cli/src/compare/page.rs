@@ -1,4 +1,4 @@
-//! The report of `durer compare`: one HTML file that needs no network.
+//! The report of `durer compare`, which is one HTML file that needs no network access.
 
 use super::args::CompareArgs;
 use super::compared_pair::{ComparedPair, Outcome, PairPictures, name};
@@ -10,7 +10,7 @@ use durer::image::{Image, Layer, Transfer, decode_linear};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Page template without data.
+/// Template of the page, without data.
 const PAGE: &str = include_str!("page.html");
 
 /// Encodes the pictures of a pair for the page.
@@ -33,7 +33,7 @@ pub fn heat(comparison: &Comparison) -> Layer {
     Layer::data("heat", Image { width: comparison.width, height: comparison.height, pixels })
 }
 
-/// Returns a picture as a layer, with the transfer curve for display.
+/// Returns a picture as a layer, with the transfer curve used to display it.
 fn screen(picture: &Picture) -> (Layer, Transfer) {
     match picture.scale {
         Scale::Display => (Layer::data("", picture.image.clone()), Transfer::Linear),

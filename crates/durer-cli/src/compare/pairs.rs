@@ -1,4 +1,4 @@
-//! Pairs the pictures in two files or folders.
+//! Forms pairs of the pictures in two files or folders.
 
 use crate::failure::{Failure, invalid_input};
 use durer::image::format_for;
@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 
 /// A reference picture and the picture to compare with it.
 pub struct Pair {
-    /// Name of the student, if there is a folder for each student.
+    /// Name of the student if there is a folder for each student.
     pub student: Option<String>,
-    /// File name, or path below the folder.
+    /// File name, or the path relative to the folder.
     pub name: String,
     pub reference: PathBuf,
-    /// Picture to compare; `None` if there is none for this reference.
+    /// Picture to compare, or `None` if there is none for this reference.
     pub picture: Option<PathBuf>,
 }
 
-/// The pairs of pictures that `durer compare` compares, and pictures without a reference.
+/// The pairs of pictures that `durer compare` compares, and the pictures without a reference.
 pub struct Pairs {
     pub pairs: Vec<Pair>,
     pub extra: Vec<PathBuf>,
@@ -23,10 +23,10 @@ pub struct Pairs {
     pub folders: bool,
 }
 
-/// Maximum depth of folders, because links can form cycles.
+/// Maximum depth of nested folders. It is limited because links can form cycles.
 const DEPTH: usize = 16;
 
-/// Pairs two pictures, or the pictures in two folders with the same names.
+/// Pairs two pictures, or pairs the pictures with the same names in two folders.
 pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     for path in [reference, picture] {
         if !path.exists() {
@@ -79,7 +79,7 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
 }
 
 impl Pairs {
-    /// Adds the pairs of one folder. Returns the number of references with a counterpart.
+    /// Adds the pairs in one folder. Returns the number of references with a counterpart.
     fn add(
         &mut self,
         who: Option<String>,
@@ -111,7 +111,7 @@ impl Pairs {
     }
 }
 
-/// Returns the names in a folder, sorted, without hidden files.
+/// Returns the sorted names of the entries in a folder, without hidden files.
 fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
     let unreadable =
         |error: std::io::Error| invalid_input(format!("cannot read the folder `{}`: {error}", folder.display()));
@@ -124,7 +124,7 @@ fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
     Ok(names)
 }
 
-/// Collects the pictures in and below a folder, recognised by extension.
+/// Collects the pictures in a folder and its subfolders, recognised by their extensions.
 fn pictures(root: &Path, below: &Path, depth: usize, pairs: &mut Vec<PathBuf>) -> Result<(), Failure> {
     for name in names(&root.join(below))? {
         let path = below.join(&name);

@@ -12,18 +12,18 @@ use durer::render::{Job, center_ray, raster};
 use durer::sampler::SampleId;
 use serde_json::{Value, json};
 
-/// The ray through the pixel that differs most in a region, explained for the report of `durer
-/// compare`.
+/// The ray through the pixel that differs most in a region, with an explanation for the report of
+/// `durer compare`.
 pub struct PixelHit {
-    /// First hit of the ray; `None` if it hits nothing.
+    /// First hit of the ray, or `None` if it hits nothing.
     pub hit: Option<Hit>,
-    /// Explanation of the ray's colour, with the lines of `durer explain`.
+    /// Explanation of the ray's colour, as the lines that `durer explain` prints.
     pub explanation: Vec<String>,
     /// Command that explains the whole pixel.
     pub command: String,
 }
 
-/// First surface on a ray, with names for the report.
+/// The first surface that a ray hits, with names for the report.
 pub struct Hit {
     pub object: String,
     pub material: String,

@@ -1,5 +1,5 @@
-//! Opens the scene of a pair of pictures and finds the options that the reference was rendered
-//! with.
+//! Opens the scene of a pair of pictures and finds the options with which the reference was
+//! rendered.
 
 use super::args::CompareArgs;
 use super::pairs::Pair;
@@ -15,9 +15,9 @@ use durer::mistakes::{DiagnosisInput, off};
 use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
-/// Maximum share of differing pixels at which options count as those of the reference.
+/// Maximum fraction of differing pixels for which the options count as those of the reference.
 const MAX_SAME: f64 = 0.01;
-/// The limit used instead of [`MAX_SAME`] for filters wider than a pixel.
+/// Limit used instead of [`MAX_SAME`] for filters that are wider than a pixel.
 const MAX_SAME_FILTERED: f64 = 0.2;
 
 /// A compiled scene with the options that reproduce the reference, used to explain differences.
@@ -27,13 +27,13 @@ pub struct ReferenceScene {
     pub transfer: Transfer,
     /// Scene file.
     pub path: PathBuf,
-    /// Command-line options that reproduce the picture, without its size.
+    /// Command-line options that reproduce the picture, except its size.
     pub options: String,
-    /// Note on the options if they were inferred.
+    /// Note about the options if they were inferred.
     pub note: Option<String>,
 }
 
-/// Options with which the reference may have been rendered.
+/// Options that may have been used to render the reference.
 struct RenderGuess {
     dialect: Option<Dialect>,
     center: bool,
@@ -42,8 +42,8 @@ struct RenderGuess {
 }
 
 /// Opens the scene of a pair and finds the options that reproduce the reference. If the given
-/// options do not, tries the ones that students often forget: the dialect, one sample per pixel,
-/// shadows, and the number of bounces.
+/// options do not reproduce it, tries the ones that students often forget: the dialect, one sample
+/// per pixel, shadows, and the number of bounces.
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,
@@ -58,7 +58,8 @@ pub fn stage(
     let mut best = (reference_difference(&first, reference, transfer), first, transfer, None);
     // With filters wider than a pixel, edges cannot be reproduced exactly.
     let enough = if best.1.1.sampling.is_local() { MAX_SAME } else { MAX_SAME_FILTERED };
-    // The course's programs have no path tracer, so there are no other dialects to try.
+    // The course's programs have no path tracer, so there are no other dialects to try in this
+    // case.
     if best.0 <= enough || best.1.1.method.path_options().is_some() {
         return Ok(Some(reference_scene(args, path, best.1, best.2, None)));
     }
@@ -133,7 +134,7 @@ fn reopened(
     Ok((compiled, job))
 }
 
-/// Opens the scene in a candidate dialect; `None` if the scene cannot be read in it.
+/// Opens the scene in a candidate dialect. Returns `None` if the scene cannot be read in it.
 fn tried(
     args: &CompareArgs,
     path: &Path,
@@ -198,7 +199,8 @@ impl ReferenceScene {
     }
 }
 
-/// Returns the path of the scene of a pair. In a folder, it is the file with the picture's name.
+/// Returns the path of the scene for a pair of pictures. In a folder, this is the file with the
+/// same name as the picture.
 fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     if !scene.is_dir() {
         return Ok(scene.into());

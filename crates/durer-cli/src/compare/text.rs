@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Version of the JSON form. It increases if a field changes its meaning or is removed.
+/// Version of the JSON form. It increases if the meaning of a field changes or a field is removed.
 const VERSION: u32 = 1;
 
 /// Prints the comparison of a single pair.
@@ -87,7 +87,7 @@ pub fn region_text(region: &Region) -> String {
     )
 }
 
-/// Formats a tolerance, as n/255 if it is a multiple of 1/255.
+/// Formats a tolerance. A multiple of 1/255 is written as n/255.
 fn tolerance(value: f32) -> String {
     let steps = value * 255.0;
     if (steps - steps.round()).abs() < 1e-3 && steps < 256.0 { format!("{steps:.0}/255") } else { format!("{value}") }
@@ -131,8 +131,8 @@ pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     }
 }
 
-/// Returns the results as comma-separated values (RFC 4180) with one line per picture: verdict,
-/// metrics, and the names and descriptions of mistakes.
+/// Returns the results as comma-separated values (RFC 4180). Each line describes one picture with
+/// the verdict, metrics, and the names and descriptions of mistakes.
 pub fn csv(all: &[ComparedPair]) -> String {
     let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -164,7 +164,7 @@ pub fn csv(all: &[ComparedPair]) -> String {
     table
 }
 
-/// Counts the pictures of each student: same, different, missing, failed.
+/// Counts the pictures of each student by verdict: same, different, missing, failed.
 pub fn students(all: &[ComparedPair]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();
     for compared in all {

@@ -1,4 +1,4 @@
-//! The options of the course's programs as a table, and their parser.
+//! Table of the options of the course's programs, and a parser for them.
 
 use crate::failure::{Failure, invalid_input};
 use crate::terminal::{print_error_line, print_line};
@@ -7,8 +7,8 @@ use durer::dialect::{Dialect, DialectSet, Quirk, set};
 use durer::format::course::Hint;
 use std::path::Path;
 
-/// An official program of the course, which `durer course` emulates: name, dialect and further
-/// quirks.
+/// An official program of the course, which `durer course` emulates: its name, its dialect, and its
+/// other quirks.
 pub struct Program {
     pub name: &'static str,
     pub dialect: Dialect,
@@ -31,7 +31,8 @@ pub fn program(name: &str) -> Option<&'static Program> {
     PROGRAMS.iter().find(|program| program.name == name)
 }
 
-/// An option of the course's programs: name, names of its values, years that have it, help text.
+/// An option of the course's programs: its name, the names of its values, the years that have it,
+/// and its help text.
 pub struct CourseOption(&'static str, &'static [&'static str], DialectSet, &'static str);
 
 const NOT_A4: DialectSet = set::ALL & !set::F12A4;
@@ -92,7 +93,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Parses a command line. Unknown words are kept for [`Arguments::check_unknown`].
+    /// Parses a command line. Unknown words are stored for [`Arguments::check_unknown`].
     pub fn parse(arguments: Vec<String>) -> Result<Self, Failure> {
         let mut parsed = Arguments { options: Vec::new(), unknown: Vec::new() };
         let mut rest = arguments.into_iter();
@@ -102,7 +103,7 @@ impl Arguments {
                 continue;
             };
             let values: Vec<String> = rest.by_ref().take(row.1.len()).collect();
-            // An option in place of a value means that a value is missing.
+            // If an option appears in place of a value, the value is missing.
             let option = values.iter().find(|value| rows().any(|row| row.0 == **value));
             if values.len() < row.1.len() || option.is_some() {
                 let found = option.map(|option| format!(", but found {option}")).unwrap_or_default();
@@ -118,7 +119,7 @@ impl Arguments {
         self.options.iter().any(|(row, _)| row.0 == name)
     }
 
-    /// Returns the values of an option. If it is given several times, the last one counts.
+    /// Returns the values of an option. If the option is given several times, the last one counts.
     pub fn values(&self, name: &str) -> Option<&[String]> {
         self.options.iter().rev().find(|(row, _)| row.0 == name).map(|(_, values)| values.as_slice())
     }
@@ -141,14 +142,15 @@ impl Arguments {
         Ok(self.numbers(name, 1)?.and_then(|mut values| values.pop()))
     }
 
-    /// Returns the magnification of a diagram, if it is requested.
+    /// Returns the magnification of a diagram if the diagram is requested.
     pub fn zoom(&self, name: &str) -> Result<Option<u32>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
         let zoom = values[1].parse().ok().filter(|zoom| (1..=1000).contains(zoom));
         zoom.map(Some).ok_or_else(|| invalid_input(format!("{name}: the zoom must be from 1 to 1000")))
     }
 
-    /// Reports unknown options. The program of f12a4 ignores them; the others fail.
+    /// Reports options that are unknown. The program of f12a4 ignores unknown options, and the
+    /// others fail.
     pub fn check_unknown(&self, dialect: Option<Dialect>, quiet: bool) -> Result<(), Failure> {
         for word in &self.unknown {
             let near = did_you_mean(word, rows().map(|row| row.0));
@@ -166,7 +168,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// Returns hints about the dialect that follow from the options.
+    /// Returns the hints about the dialect that the options give.
     pub fn hints(&self) -> Vec<Hint> {
         let mut hints: Vec<Hint> = self
             .options

@@ -1,7 +1,7 @@
 //! Chooses the dialect of a scene whose keywords and options fit several years.
 //!
 //! A small picture is rendered in the guessed dialect. If it has NaN samples, the first other
-//! fitting dialect without NaN samples is used instead.
+//! fitting dialect whose picture has no NaN samples is used instead.
 
 use super::job;
 use super::options::Arguments;
@@ -21,14 +21,14 @@ use std::path::Path;
 /// Maximum width and height of the trial picture in pixels.
 const SIDE: u32 = 64;
 
-/// Maximum difference per channel between pixels that look the same.
+/// Maximum difference per channel between two pixels that look the same.
 const MAX_CHANNEL_DIFFERENCE: f32 = 2.0 / 255.0;
 
-/// Two pictures look the same if at most one in this many pixels differs visibly.
+/// Two pictures look the same if at most one out of this many pixels differs visibly.
 const MIN_PIXELS_PER_DIFFERENCE: usize = 1000;
 
-/// Opens a scene in the dialect that fits best. Prints its warnings, and a note if the picture
-/// differs from that of the dialect guessed from keywords alone.
+/// Opens a scene in the dialect that fits best. Prints the warnings of the scene. Also prints a
+/// note if the picture differs from the picture in the dialect guessed from keywords alone.
 pub fn open(
     scene: &Path,
     options: &LoadOptions,
@@ -66,7 +66,7 @@ pub fn open(
     Ok(chosen)
 }
 
-/// Explains why a scene is read in a dialect.
+/// Explains why a scene is read in a certain dialect.
 fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     match guess.dialect == dialect {
         true => guess.note(),
@@ -80,7 +80,7 @@ fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
 /// A small picture rendered to test whether a dialect fits the scene.
 struct Trial {
     layers: Vec<Layer>,
-    /// Number of samples that are NaN.
+    /// Number of NaN samples.
     nan: u64,
 }
 

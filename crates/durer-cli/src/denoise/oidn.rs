@@ -1,5 +1,5 @@
 //! Bindings to Open Image Denoise 2, which is loaded at run time. They cover the part of its C
-//! interface that denoises one picture.
+//! interface that is needed to denoise one picture.
 //!
 //! Source: the documentation at <https://www.openimagedenoise.org>. Results differ in their last
 //! bits between machines.
@@ -14,7 +14,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::null;
 
-/// Environment variable with the folder of the library, or with the folder that contains `lib`.
+/// Environment variable that names the folder of the library, or the folder that contains `lib`.
 const FOLDER: &str = "OIDN_DIR";
 
 /// File name of the library.
@@ -26,11 +26,11 @@ const NAME: &str = if cfg!(windows) {
     "libOpenImageDenoise.so.2"
 };
 
-/// `OIDN_DEVICE_TYPE_CPU` and `OIDN_FORMAT_FLOAT3`.
+/// Values of `OIDN_DEVICE_TYPE_CPU` and `OIDN_FORMAT_FLOAT3`.
 const CPU: c_int = 1;
 const FLOAT3: c_int = 3;
 
-/// Handle of an object of the library: a device, buffer or filter.
+/// Handle to an object of the library: a device, buffer or filter.
 type Object = *mut c_void;
 
 /// Denoises a picture with Open Image Denoise.
@@ -44,8 +44,8 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
     // The library expects albedo in [0, 1] and finite values.
     let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     let mut clean = vec![Vec3::ZERO; count];
-    // SAFETY: names and types are those of oidn.h, version 2. `Vec3` is three floats without
-    // padding. All four pictures have width * height elements and live until the filter is
+    // SAFETY: the names and types are those of oidn.h, version 2. A `Vec3` consists of three floats
+    // without padding. All four pictures have width * height elements and live until the filter is
     // released. The output is read only after the filter has run.
     unsafe {
         let new_device: Symbol<unsafe extern "C" fn(c_int) -> Object> = symbol(&library, c"oidnNewDevice")?;
@@ -76,7 +76,7 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
         commit_device(device);
         let filter = new_filter(device, c"RT".as_ptr());
         if !filter.is_null() {
-            // The C interface has one pointer type for inputs and outputs.
+            // The C interface has the same pointer type for inputs and outputs.
             for (name, pixels) in [
                 (c"color", noisy.picture.pixels.as_ptr().cast_mut()),
                 (c"albedo", albedo.as_ptr().cast_mut()),
@@ -104,12 +104,12 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
     Image::from_pixels(noisy.picture.width, noisy.picture.height, clean).map_err(|error| error.to_string())
 }
 
-/// Returns a function of the library by name.
+/// Returns the library function with the given name.
 ///
 /// # Safety
 /// `T` must be the type of the function.
 unsafe fn symbol<'l, T>(library: &'l Library, name: &CStr) -> Result<Symbol<'l, T>, String> {
-    // SAFETY: the caller guarantees the function's type.
+    // SAFETY: the caller guarantees that the type is the function's type.
     unsafe { library.get(name.to_bytes_with_nul()) }
         .map_err(|_| format!("this is not version 2 of Open Image Denoise: it has no {}", name.to_string_lossy()))
 }
@@ -118,6 +118,7 @@ fn load() -> Result<Library, String> {
     let folder = std::env::var_os(FOLDER).map(PathBuf::from);
     let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
     let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
-    // SAFETY: this runs the library's initialisers. The user or the system installed the library.
+    // SAFETY: loading the library runs its initialisers. The user or the operating system installed
+    // the library.
     unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise was not found".into())
 }

@@ -7,7 +7,7 @@ use durer::report::{lights, outlines};
 use durer::world::World;
 use serde_json::{Value, json};
 
-/// Page template without data.
+/// Template of the page, without data.
 const PAGE: &str = include_str!("page.html");
 /// Returns a self-contained page with the picture, the tree of `sample`, and its rays in 3D.
 pub fn page(

@@ -1,19 +1,19 @@
-//! Quotes text for the languages of job files. The result is a single line of printable characters,
-//! so it cannot end a shell command, a comment or a YAML block.
+//! Quotes text for the languages used in job files. The result is a single line of printable
+//! characters, so it cannot end a shell command, a comment or a YAML block.
 
 use crate::frames;
 use std::fmt::Write;
 
-/// Returns true if a character needs no escape in any of the languages.
+/// Returns true if a character does not need to be escaped in any of the languages.
 fn is_plain(c: char) -> bool {
     // Letters of all alphabets are printable in YAML. Other non-ASCII characters can be line
-    // breaks, bidirectional controls or unprintable.
+    // breaks, bidirectional control characters or unprintable characters.
     matches!(c, ' '..='~') && !matches!(c, '\'' | '\\' | '{' | '}') || c.is_alphanumeric()
 }
 
-/// Quotes text as one bash word.
+/// Quotes text as a single bash word.
 ///
-/// Braces are escaped, because `{{` starts an expression in templates of Open Job Description.
+/// Braces are escaped because `{{` starts an expression in Open Job Description templates.
 pub fn bash_word(text: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-./:=,+%".contains(c);
     if !text.is_empty() && text.chars().all(is_bare) {
@@ -27,7 +27,7 @@ pub fn bash_word(text: &str) -> String {
         if is_plain(c) {
             word.push(c);
         } else {
-            // Escape bytes, because `\u` depends on the locale.
+            // Escape individual bytes because the meaning of `\u` depends on the locale.
             c.encode_utf8(&mut [0; 4]).bytes().for_each(|byte| {
                 let _ = write!(word, "\\x{byte:02x}");
             });
@@ -36,8 +36,8 @@ pub fn bash_word(text: &str) -> String {
     word + "'"
 }
 
-/// Quotes the file name pattern of an animation as one bash word, with `$frame` as the frame
-/// number.
+/// Quotes the file name pattern of an animation as a single bash word, with `$frame` in place of
+/// the frame number.
 pub fn bash_word_of_frame(pattern: &str) -> String {
     match frames::place(pattern) {
         None if pattern.is_empty() => String::new(),

@@ -1,5 +1,5 @@
-//! Tests job files for scenes with hostile names, using bash and, if installed, parsers of YAML and
-//! Python.
+//! Tests job files for scenes with hostile names. It uses bash and, if they are installed, YAML and
+//! Python parsers.
 
 use super::*;
 use durer::sampler::hash;
@@ -56,7 +56,7 @@ const PIECES: [&str; 46] = [
     "*",
 ];
 
-/// Returns a name built from these pieces, which depends only on `number`.
+/// Returns a name built from these pieces. It depends only on `number`.
 fn name(number: u32) -> String {
     let random = |i: u32, most: u64| (hash(7, number, i, 0, 0) % most) as usize;
     (0..1 + random(0, 8)).map(|i| PIECES[random(i as u32 + 1, PIECES.len() as u64)]).collect()
@@ -73,7 +73,7 @@ fn args(template: &str, scene: &str, output: &str, options: &[&str]) -> FarmArgs
     }
 }
 
-/// Number of names: `DURER_ROUNDS` times two thousand.
+/// Returns the number of names, which is `DURER_ROUNDS` times 2000.
 fn rounds() -> u32 {
     2000 * std::env::var("DURER_ROUNDS").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
 }
@@ -84,7 +84,8 @@ fn made(template: &str, number: u32) -> (String, [String; 3]) {
     (text.unwrap_or_else(|_| panic!("{scene:?} {output:?}")), [scene, output, camera])
 }
 
-/// Returns what a program prints for a file as input; `None` if the program is not installed.
+/// Returns the output of a program that reads a file as its input, or `None` if the program is not
+/// installed.
 fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     let input = std::fs::File::open(input).unwrap();
     let done = Command::new(program).args(arguments).stdin(input).stderr(Stdio::piped()).output().ok()?;
@@ -92,15 +93,15 @@ fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     Some(done.stdout)
 }
 
-/// Separator between scripts, which no script contains.
+/// Separator between scripts. It does not occur in any script.
 const END: char = '\0';
 
-/// Runs shell scripts with a stub `durer` that prints its arguments.
+/// Start of a shell script that replaces `durer` by a stub, which prints its arguments.
 const STUB: &str = r#"mkdir() { :; }; durer() { printf '%s\0' "$@"; printf '\1\0'; }
     SLURM_ARRAY_TASK_ID=2 JOB_COMPLETION_INDEX=1
     while IFS= read -r -d '' script; do (eval "$script"); printf '\2\0'; done"#;
 
-/// Checks that each script runs `durer` once, with exactly the names as arguments.
+/// Checks that each script runs `durer` once with exactly the given names as arguments.
 fn check_scripts(scripts: &str, names: &[[String; 3]]) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scripts");
@@ -136,7 +137,7 @@ fn scene_names_are_quoted_for_bash() {
         let (text, own) = made("slurm", number);
         scripts.extend([&text, "\0"]);
         names.push(own);
-        // Check the command in the comment too, because users may copy it.
+        // Also check the command in the comment, because users may copy it.
         let comment = text.lines().find(|line| line.contains("durer merge")).unwrap();
         assert!(comment.starts_with("# When all tasks have finished:  durer merge "), "{comment}");
     }
@@ -148,7 +149,8 @@ fn made_plain(template: &str) -> String {
     job_file(&args(template, "a.txt", "a.exr", &["--camera", "b"])).unwrap_or_else(|_| panic!("{template}"))
 }
 
-/// Reads YAML documents, each terminated by a zero byte, and prints the shell scripts in them.
+/// Python program that reads YAML documents, each terminated by a zero byte, and prints the shell
+/// scripts in them.
 const YAML: &str = "
 import sys, yaml
 loader = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
@@ -181,8 +183,8 @@ fn scene_names_are_quoted_for_yaml() {
     }
 }
 
-/// Reads Python programs, each terminated by a zero byte, and prints the names in their string
-/// literals.
+/// Python program that reads Python programs, each terminated by a zero byte, and prints the names
+/// in their string literals.
 const PYTHON: &str = "
 import ast, sys
 for text in sys.stdin.buffer.read().decode().split('\\0')[:-1]:

@@ -10,19 +10,19 @@ use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// First line of a lesson's text, by which an earlier lesson is recognised.
+/// First line of a lesson's text. It identifies an earlier lesson.
 pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
 
 /// Maximum size of a lesson's text in bytes.
 const MAX_TEXT: u64 = 16 << 20;
 
-/// Output folder of `durer lesson`, with the files of an earlier lesson that can be replaced.
+/// Output folder of `durer lesson`, and the files of an earlier lesson that may be replaced.
 pub struct Folder {
     path: PathBuf,
     /// True if the folder does not exist yet.
     new: bool,
-    /// Files written by an earlier lesson.
+    /// Files that an earlier lesson wrote.
     own: BTreeSet<String>,
 }
 
@@ -46,8 +46,8 @@ impl Folder {
         Ok(Folder { path, new, own })
     }
 
-    /// Writes all files or none, and removes files of an earlier lesson that are no longer needed.
-    /// Returns the path of the folder.
+    /// Writes either all files or none, and removes files of an earlier lesson that are no longer
+    /// needed. Returns the path of the folder.
     pub fn write(self, files: Vec<(String, Vec<u8>)>, registry: &mut FileRegistry) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
@@ -88,7 +88,8 @@ impl Folder {
     }
 }
 
-/// Returns the names of the files that a lesson's text links to; empty if the text is not a lesson.
+/// Returns the names of the files that a lesson's text links to. The list is empty if the text is
+/// not a lesson.
 fn linked(text: &str) -> BTreeSet<String> {
     if text.lines().next() != Some(MARK) {
         return BTreeSet::new();

@@ -47,8 +47,8 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
 }
 
-/// Escapes text that contains a user's file name, so that it cannot create a link or an HTML
-/// element.
+/// Escapes text that contains the name of a user's file, so that the name cannot create a link or
+/// an HTML element.
 fn plain(text: &str) -> String {
     text.replace('[', "&#91;").replace(']', "&#93;").replace('<', "&lt;")
 }

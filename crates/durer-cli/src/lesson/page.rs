@@ -5,10 +5,10 @@ use crate::page::{uri, with_data};
 use durer::lesson::OWN_SCENE;
 use serde_json::{Map, Value, json};
 
-/// Page template without data.
+/// Template of the page, without data.
 const PAGE: &str = include_str!("page.html");
 
-/// Returns a self-contained page.
+/// Returns a self-contained HTML page.
 pub fn page(lesson: &Lesson) -> String {
     let pictures: Map<String, Value> =
         lesson.pictures.iter().map(|(name, png)| (name.clone(), uri(png).into())).collect();
@@ -26,7 +26,7 @@ fn step(step: &StepFiles, scene: &str) -> Value {
     json!({
         "title": step.title,
         "elsewhere": step.elsewhere(scene),
-        // Print the text of a topic once, at its first step.
+        // Print the text of a topic only once, at its first step.
         "words": (!step.continues_topic).then_some(step.topic.words),
         "equations": (!step.continues_topic).then_some(step.topic.equations),
         "before": step.before.as_ref().map(figure),

@@ -1,4 +1,4 @@
-//! A lesson that is ready to be written: its steps, with pictures as files.
+//! A lesson that is ready to be written, with the pictures of its steps as files.
 
 use crate::failure::Failure;
 use crate::page::png;
@@ -22,20 +22,20 @@ pub struct StepFiles {
     pub title: String,
     pub effect: String,
     pub uses_built_in_scene: bool,
-    /// Reason why the user's scene cannot show the step.
+    /// Reason why the step cannot be shown with the user's scene.
     pub missing_because: &'static str,
     /// True if the step continues the topic of the previous step.
     pub continues_topic: bool,
     pub before: Option<Figure>,
     pub after: Figure,
     pub change: Option<String>,
-    /// SVG drawing and the name of its file, if any.
+    /// SVG drawing and the name of its file, if there is one.
     pub plan: Option<(String, String)>,
 }
 
-/// A lesson that is ready to be written: steps, and encoded pictures by file name.
+/// A lesson that is ready to be written: its steps, and its encoded pictures by file name.
 pub struct Lesson {
-    /// File name of the scene, without its folder.
+    /// File name of the scene without its folder.
     pub scene: String,
     pub steps: Vec<StepFiles>,
     /// Names and contents of the picture files, without duplicates.
@@ -44,7 +44,7 @@ pub struct Lesson {
 }
 
 impl Lesson {
-    /// Adds a step, whose file names begin with its number.
+    /// Adds a step. The names of its files begin with the number of the step.
     pub fn add(&mut self, step: Step) -> Result<(), Failure> {
         let name = format!("{:02}-{}", self.steps.len() + 1, step.topic.name);
         let figure = |lesson: &mut Lesson, picture: &Picture, end: &str| -> Result<Figure, Failure> {
@@ -72,8 +72,8 @@ impl Lesson {
         Ok(())
     }
 
-    /// Returns the file name of a picture. Equal pictures share a file, because a step often begins
-    /// with the last picture of the previous step.
+    /// Returns the file name of a picture. Identical pictures share a file because a step often
+    /// begins with the last picture of the previous step.
     fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
         let png = png(layer.clone(), self.transfer)?;
         if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {
@@ -83,18 +83,18 @@ impl Lesson {
         Ok(name)
     }
 
-    /// Returns true if some step uses the built-in scene.
+    /// Returns true if at least one step uses the built-in scene.
     pub fn shows_ours(&self) -> bool {
         self.steps.iter().any(|step| step.uses_built_in_scene)
     }
 }
 
 impl StepFiles {
-    /// Returns a sentence that says why the step uses the built-in scene; `None` if it uses the
+    /// Returns a sentence that says why the step uses the built-in scene, or `None` if it uses the
     /// user's scene.
     pub fn elsewhere(&self, scene: &str) -> Option<String> {
         let missing_because = self.missing_because;
-        // Later steps of the same topic need no explanation.
+        // Later steps of the same topic do not need an explanation.
         (self.uses_built_in_scene && !self.continues_topic).then(|| {
             format!(
                 "{scene} cannot show this: {missing_because}. This step uses a small built-in scene, {OWN_SCENE_NAME}."

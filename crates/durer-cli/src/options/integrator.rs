@@ -1,4 +1,4 @@
-//! Command-line options of the integrators, generated from the library's table.
+//! Command-line options of the integrators, which are generated from the library's table.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -7,7 +7,7 @@ use durer::integrator::IntegratorKind;
 use durer::job::{RenderJob, option_name};
 use durer::options::{integrator_help, integrator_options};
 
-/// The integrator options that were given on the command line.
+/// The integrator options given on the command line.
 #[derive(Clone, Default)]
 pub struct IntegratorArgs(pub RenderJob);
 

@@ -1,5 +1,5 @@
-//! Command-line options of the render job, generated from the library's table, and of the
-//! acceleration structure.
+//! Command-line options of the acceleration structure and of the render job. The latter are
+//! generated from the library's table.
 
 use super::integrator::IntegratorArgs;
 use crate::failure::{Failure, invalid_input};
@@ -26,11 +26,11 @@ struct AccelArgs {
     grid: Option<[u32; 3]>,
 }
 
-/// Builds the clap argument for an option of the library.
+/// Creates the clap argument for an option of the library.
 fn arg(option: &'static JobOption) -> Arg {
     let JobOption { name, doc, form } = *option;
     let arg = Arg::new(name).long(name).help(one_line(doc));
-    // Validate the text, but keep it as text.
+    // Validate the text but store it as text.
     let checked = move |text: &str| RenderJob::default().set(name, text).map(|()| text.to_string());
     let arg = match form {
         OptionForm::Flag => arg.action(ArgAction::SetTrue),
@@ -119,7 +119,7 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     })
 }
 
-/// Returns the requested aspect ratio, width over height.
+/// Returns the requested aspect ratio, which is width divided by height.
 pub fn aspect(args: &JobArgs) -> Option<f32> {
     args.options.requested_size().map(|(width, height)| width as f32 / height.max(1) as f32)
 }

@@ -1,4 +1,4 @@
-//! `durer photo camera`: computes the camera of one photograph.
+//! Implements `durer photo camera`, which computes the camera of one photograph.
 
 use super::args::CameraArgs;
 use super::inputs::{bytes, from_photo_error};

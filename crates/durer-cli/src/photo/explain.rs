@@ -1,4 +1,4 @@
-//! `durer photo explain`: explains a camera or a point.
+//! Implements `durer photo explain`, which explains a camera or a point.
 
 use super::args::ExplainArgs;
 use super::inputs::{from_photo_error, read};

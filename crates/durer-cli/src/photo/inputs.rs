@@ -1,8 +1,8 @@
-//! Reads input files: photographs, and files of cameras and points.
+//! Reads input files, which are photographs and files of cameras and points.
 //!
-//! A file that the user names can be anywhere. A file that another file names, or that is found in
-//! a folder, must be in or below that folder after links are resolved. The same rule applies to the
-//! files of a scene.
+//! A file that the user names may be in any folder. A file that another file names, or that is
+//! found in a folder, must be inside that folder after links are resolved. The same rule applies to
+//! the files of a scene.
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -14,7 +14,7 @@ use durer_photo::{Error, Reconstruction};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Converts an error in a photograph or a reconstruction into a failure for invalid input.
+/// Converts an error in a photograph or a reconstruction into a failure caused by invalid input.
 pub fn from_photo_error(error: Error) -> Failure {
     invalid_input(error.to_string())
 }
@@ -45,14 +45,14 @@ fn outside(path: &Path, folder: &Path) -> String {
     )
 }
 
-/// Reads a regular file that the source allows, if it fits into memory.
+/// Reads a regular file that the source allows, provided it fits into memory.
 fn read_below(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
     let most = Memory::default().bytes().unwrap_or(u64::MAX).min(FolderSource::DEFAULT_BUDGET);
     let real = source.allowed(path)?;
     source.budget(most).read_path(&real, &path.to_string_lossy())
 }
 
-/// Runs `work` with the given number of threads; `None` means one per processor.
+/// Runs `work` with the given number of threads, where `None` means one per processor.
 pub fn with_threads<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build()?;
     Ok(pool.install(work))
@@ -83,18 +83,19 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Returns the name of a file, without its folder.
+/// Returns the name of a file without its folder.
 pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Reads cameras and points. If the file lacks the names and sizes of photographs, those in the
-/// folder `pictures` are used, in order.
+/// Reads cameras and points. If the file lacks the names and sizes of photographs, the photographs
+/// in the folder `pictures` are used in order.
 pub fn read(file: &Path, pictures: Option<&Path>, registry: &mut FileRegistry) -> Result<Reconstruction, Failure> {
     inputs(file).iter().try_for_each(|path| registry.register_input(path))?;
     let folder = if file.is_dir() { file } else { folder_of(file) };
     let mut open = |path: &Path| {
-        // The user named only the file itself; other files are named by it or found in its folder.
+        // The user named only the file itself. Other files are named by that file or found in its
+        // folder.
         let source = FolderSource::new(folder);
         let source = if path == file { source.allow_outside() } else { source };
         read_below(source, path).map_err(|error| match error {

@@ -1,4 +1,4 @@
-//! `durer photo match`: finds features in photographs and matches them.
+//! Implements `durer photo match`, which finds features in photographs and matches them.
 
 use super::args::MatchArgs;
 use super::inputs::{bytes_below, from_photo_error, name, photographs, with_threads};
@@ -12,7 +12,7 @@ use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 use std::path::Path;
 
-/// Fraction of the progress bar for finding features; matching takes the rest.
+/// Fraction of the progress bar for finding features. Matching takes the rest.
 const FEATURES: f64 = 0.5;
 
 /// Runs `durer photo match`.
@@ -39,8 +39,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let mut described = Vec::new();
         let mut doubts = Vec::new();
         for (i, path) in paths.iter().enumerate() {
-            // Process one photograph at a time: they are large, and feature detection uses all
-            // threads.
+            // Process one photograph at a time because photographs are large and feature detection
+            // uses all threads.
             let own = Path::new(path.file_name().unwrap_or_default());
             let content = bytes_below(&args.folder, own, &mut FileRegistry::default())?;
             let photo = photo::read(&name(path), &content).map_err(from_photo_error)?;

@@ -1,9 +1,10 @@
-//! `durer photo place`: inserts objects of a scene into a photograph, with their shadows.
+//! Implements `durer photo place`, which inserts objects of a scene into a photograph, with their
+//! shadows.
 //!
 //! The scene is rendered with and without the objects. Where stand-ins are visible, the photograph
 //! is multiplied by the ratio of the two renders. Source: Debevec, *Rendering Synthetic Objects
-//! into Real Scenes*, SIGGRAPH 1998, section 5.3. Here a ratio replaces the difference, so that the
-//! colours of the stand-ins cancel.
+//! into Real Scenes*, SIGGRAPH 1998, section 5.3. Here a ratio replaces the difference of the
+//! original method, so that the colours of the stand-ins cancel.
 
 use super::args::PlaceArgs;
 use super::inputs::{bytes, from_photo_error};
@@ -25,11 +26,11 @@ use durer::world::World;
 use durer_photo::photo;
 use std::sync::Arc;
 
-/// Number of rays per pixel along each axis for the coverage by inserted objects.
+/// Number of rays per pixel along each axis that measure the coverage by inserted objects.
 const ACROSS: u32 = 4;
-/// Number of rows of pixels traced at once.
+/// Number of pixel rows that are traced at once.
 const BAND: u32 = 64;
-/// Radius in pixels of the neighbourhood from which a partly covered pixel takes its shadow.
+/// Radius, in pixels, of the neighbourhood from which a partly covered pixel takes its shadow.
 const SHADOW_RADIUS: usize = 2;
 
 /// Runs `durer photo place`.
@@ -51,7 +52,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     }
     (job.width, job.height) = (width, height);
     if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, args.job.options.get("filter")) {
-        // A pixel of a photograph is the mean over its area.
+        // A pixel of a photograph is the mean over the area of the pixel.
         *filter = Filter::Box { radius: 0.5 };
     }
     if raster(&with.world, width, height).empty() != (0, 0) {
@@ -80,7 +81,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     save(&[(&destination, file)], args.quiet)
 }
 
-/// Returns for each material whether it is that of a stand-in.
+/// Returns a list that says for each material whether it belongs to a stand-in.
 fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
     let count = compiled.loaded.scene.materials.len();
     let mut all = vec![false; count];
@@ -112,8 +113,8 @@ fn parts(node: &ObjectKind) -> &[Object] {
     }
 }
 
-/// Returns true if an object contains a shape that is a stand-in (`wanted`) or is not one
-/// (`!wanted`).
+/// Returns true if an object contains a shape that is a stand-in (if `wanted`) or a shape that is
+/// not one (if `!wanted`).
 fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     let own = object.material.is_some_and(|number| stand_in.get(number as usize) == Some(&true));
     match parts(&object.node) {
@@ -122,7 +123,7 @@ fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     }
 }
 
-/// Removes all objects except stand-ins. A solid stays if any of its parts is a stand-in.
+/// Removes all objects except stand-ins. A solid is kept if any of its parts is a stand-in.
 fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     let one = |mut object: Object| {
         if !has(&object, stand_in, true) {
@@ -140,7 +141,7 @@ fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     objects.into_iter().filter_map(one).collect()
 }
 
-/// Returns the share of each pixel that inserted objects cover.
+/// Returns the fraction of each pixel that inserted objects cover.
 fn coverage(
     world: &World,
     job: &Job,
@@ -159,7 +160,7 @@ fn coverage(
         let Some(layer) = rendered.layers.first() else { continue };
         for (i, material) in layer.image.pixels.iter().enumerate() {
             let (x, y) = (i as u32 % width, top + i as u32 / width);
-            // A negative material is the background.
+            // A negative material number means the background.
             let object = material.x >= 0.0 && stand_in.get(material.x as usize) != Some(&true);
             let pixel = (y / ACROSS) as usize * (width / ACROSS) as usize + (x / ACROSS) as usize;
             covered[pixel] += f32::from(u8::from(object)) / (ACROSS * ACROSS) as f32;
@@ -168,9 +169,10 @@ fn coverage(
     Ok(covered)
 }
 
-/// Composes the photograph from the render with the objects W, the render without them G, the
-/// photograph P, the coverage a and the shadow r = W / G. The result is W + (1 - a) r (P - G): W
-/// for a = 1, and P W / G for a = 0. In a partly covered pixel, r is the mean over its neighbours.
+/// Composes the final photograph from the render with the objects W, the render without them G, the
+/// photograph P, the coverage a and the shadow r = W / G. The result is W + (1 - a) r (P - G),
+/// which is W for a = 1 and P W / G for a = 0. In a partly covered pixel, r is the mean over the
+/// neighbouring pixels.
 fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
     let height = plate.len() / width.max(1);
     let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };
@@ -209,16 +211,17 @@ mod tests {
     #[test]
     fn shadows_darken_and_objects_cover_the_photograph() {
         let [plate, ground, object] = [0.6, 0.4, 0.9].map(Vec3::splat);
-        // Pixels: three lit, one in half shadow, one half covered and half in shadow, one covered.
+        // The pixels are three lit ones, one in half shadow, one that is half covered and half in
+        // shadow, and one that is covered.
         let without = [ground; 6];
         let with = [ground, ground, ground, 0.5 * ground, 0.5 * object + 0.25 * ground, object];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
         let placed = composed(1, &[plate; 6], &with, &without, &covered);
-        // The neighbours of the half covered pixel have a mean shadow of three quarters.
+        // The neighbours of the half-covered pixel have a mean shadow of three quarters.
         let mixed = 0.5 * object + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
         let expected = [plate, plate, plate, 0.5 * plate, mixed, object];
         assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");
-        // A black stand-in leaves the photograph unchanged.
+        // A black stand-in does not change the photograph.
         assert_eq!(composed(1, &[plate], &[Vec3::ZERO], &[Vec3::ZERO], &[0.0]), [plate]);
     }
 }

@@ -32,8 +32,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Checks before the work that the files can be written. Folders are created only when the
-    /// files are saved.
+    /// Checks before the work starts that the files can be written. Folders are created only when
+    /// the files are saved.
     pub fn new(args: &ResultArgs, registry: &mut FileRegistry) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
         for path in &args.output {
@@ -65,7 +65,7 @@ impl Results {
         Ok(())
     }
 
-    /// Writes all files or none.
+    /// Writes either all files or none.
     pub fn save(mut self, quiet: bool) -> Result<(), Failure> {
         for folder in &self.folders {
             std::fs::create_dir(folder)

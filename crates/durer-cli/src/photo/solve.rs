@@ -1,4 +1,4 @@
-//! `durer photo solve`: computes or adjusts cameras and points.
+//! Implements `durer photo solve`, which computes or adjusts cameras and points.
 
 use super::args::SolveArgs;
 use super::inputs::{bytes, from_photo_error, read, with_threads};
@@ -61,7 +61,8 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
 }
 
-/// Reads the control points before the work, so that errors in the file are reported at once.
+/// Reads the control points before the other work, so that errors in their file are reported at
+/// once.
 fn control(
     args: &SolveArgs,
     names: &[&str],
@@ -71,7 +72,7 @@ fn control(
     read_control(&path.to_string_lossy(), &bytes(path, registry)?, names).map(Some).map_err(from_photo_error)
 }
 
-/// Computes cameras and points from matches, one photograph after the other.
+/// Computes cameras and points from matches, one photograph after another.
 fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Failure> {
     let options = Options {
         fixed_focal: args.fixed_focal,
@@ -98,7 +99,7 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     Ok(solved.reconstruction)
 }
 
-/// Reads a file that already has cameras.
+/// Reads a file that already contains cameras.
 fn read_input(args: &SolveArgs, registry: &mut FileRegistry) -> Result<Reconstruction, Failure> {
     let mut all = read(&args.file, args.pictures.as_deref(), registry)?;
     if args.own_lenses {

@@ -1,4 +1,4 @@
-//! `durer photo tour`: writes an HTML page for moving through photographs in 3D.
+//! Implements `durer photo tour`, which writes an HTML page for moving through photographs in 3D.
 
 use super::args::TourArgs;
 use super::inputs::{bytes_below, from_photo_error, read};
@@ -13,7 +13,7 @@ use durer_photo::tour::tour_views;
 use serde_json::json;
 use std::path::Path;
 
-/// Page template without data.
+/// Template of the page, without data.
 const PAGE: &str = include_str!("tour.html");
 
 /// Runs `durer photo tour`.
@@ -41,7 +41,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
     });
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
-    // Six decimals are more than a screen can resolve.
+    // Six decimal places are more than a screen can resolve.
     let short = |value: f64| (value * 1e6).round() / 1e6;
     let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
     let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();

@@ -1,10 +1,11 @@
-//! Tests pages in a real browser: headless Chromium with file:// URLs.
+//! Tests pages in a real browser, using headless Chromium with file:// URLs.
 
 use super::TestFolder;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Functions for a script at the end of a page: `see(text)` records a text, `done()` ends the run.
+/// Functions for a script at the end of a page: `see(text)` records a text, and `done()` ends the
+/// run.
 const HELPERS: &str = r#"
 const seen = [];
 const see = text => seen.push(text);
@@ -35,10 +36,10 @@ fn chromium() -> Option<PathBuf> {
 }
 
 /// Opens a page, runs a script at its end, and checks that the script records all of the given
-/// texts. The test is skipped if there is no browser.
+/// texts. The test is skipped if no browser is installed.
 ///
-/// The page must load nothing from disk or network. It must be readable at several window widths,
-/// in light and dark mode.
+/// The page must not load anything from disk or the network. It must be readable at several window
+/// widths, in light and dark mode.
 #[track_caller]
 pub fn sees(folder: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
@@ -46,7 +47,7 @@ pub fn sees(folder: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     for wanted in wanted.iter().chain(&["fetched 0"]) {
         assert!(title.contains(wanted), "`{wanted}` is not in {title}");
     }
-    // Inside a frame, the content sees the frame as its window.
+    // Inside a frame, the content treats the frame as its window.
     put_with(folder, page, "framed.html", READABLE);
     let frames =
         WIDTHS.map(|width| format!("<iframe src=framed.html style='width:{width}px;height:1000px;border:0'></iframe>"));
@@ -67,9 +68,9 @@ window.onmessage = event => {
 };
 "#;
 
-/// Script that checks a page in light and dark mode: contrast of text (WCAG 2.1 AA, 1.4.3: 4.5 : 1,
-/// large text 3 : 1), contrast of coloured drawings (1.4.11: 3 : 1), and that the page is not wider
-/// than its window.
+/// Script that checks a page in light and dark mode. It checks the contrast of text (WCAG 2.1 AA,
+/// 1.4.3: 4.5 : 1, large text 3 : 1), the contrast of coloured drawings (1.4.11: 3 : 1), and that
+/// the page is not wider than its window.
 const READABLE: &str = r#"
 const parts = color => { const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
 const light = rgb => rgb.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
@@ -117,11 +118,11 @@ fn put_with(folder: &TestFolder, page: &str, name: &str, script: &str) {
     folder.write(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
 }
 
-/// Returns the title of a page after a script at its end has run.
+/// Returns the title of a page after a script at the end of the page has run.
 #[track_caller]
 fn title_of(folder: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(folder.bytes(page)).unwrap();
-    // The SVG namespace is a URL that is never loaded.
+    // The SVG namespace is a URL, but it is never loaded.
     let links = text.replace("http://www.w3.org/2000/svg", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
     put_with(folder, page, name, script);

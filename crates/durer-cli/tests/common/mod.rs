@@ -1,4 +1,4 @@
-//! Shared helpers: a temporary folder with scenes, in which the program is run.
+//! Shared helpers for tests: a temporary folder with scenes, in which the program is run.
 
 #![allow(dead_code, reason = "each test file is a separate program that uses a part")]
 
@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A sphere above a mirroring floor.
+/// A sphere above a mirror-like floor.
 pub const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -22,7 +22,7 @@ Group { numObjects 2
   MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
 ";
 
-/// Mirrors and glass that split every ray in two. With many bounces, no pixel is ever finished.
+/// Mirrors and glass that split every ray into two. With many bounces, no pixel is ever finished.
 pub const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { numLights 1 PointLight { position 0 0 0 color 1 1 1 } }
 Materials { numMaterials 1
@@ -36,7 +36,7 @@ pub struct TestFolder {
     folder: TempDir,
 }
 
-/// Exit code and output of a run of the program.
+/// Exit code and output of one run of the program.
 pub struct ProgramOutput {
     pub code: Option<i32>,
     pub out: String,
@@ -62,14 +62,14 @@ impl TestFolder {
         std::fs::write(self.path(name), content).unwrap();
     }
 
-    /// Prepares a run with arguments that are separated by spaces.
+    /// Prepares a run of the program. The arguments are separated by spaces.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(durer());
         command.current_dir(self.folder.path()).args(arguments.split_whitespace()).stdin(Stdio::null());
         command
     }
 
-    /// Runs the program with arguments that are separated by spaces.
+    /// Runs the program. The arguments are separated by spaces.
     pub fn run(&self, arguments: &str) -> ProgramOutput {
         ProgramOutput::of(self.command(arguments).output().unwrap())
     }
@@ -83,7 +83,7 @@ impl TestFolder {
         output
     }
 
-    /// Runs the program. Checks that it fails with these words and writes no file.
+    /// Runs the program. Checks that the program fails with these words and writes no file.
     #[track_caller]
     pub fn expect_failure(&self, code: i32, arguments: &str, words: &[&str]) {
         let before = self.names();
@@ -95,7 +95,7 @@ impl TestFolder {
         assert_eq!(self.names(), before, "{arguments}");
     }
 
-    /// Returns the names of the files in the folder, sorted.
+    /// Returns the sorted names of the files in the folder.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -108,7 +108,7 @@ impl TestFolder {
         std::fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// Reads a picture in linear light.
+    /// Reads a picture as linear light.
     pub fn image(&self, name: &str) -> Image {
         read(&self.bytes(name), name).unwrap()
     }
@@ -118,13 +118,14 @@ impl TestFolder {
         read8(&self.bytes(name), name).unwrap()
     }
 
-    /// Interrupts a run after some time. Returns its output and the time it took to end.
+    /// Interrupts a run of the program after some time. Returns its output and the time it took to
+    /// end.
     #[cfg(unix)]
     pub fn interrupted(&self, arguments: &str, after: Duration) -> (ProgramOutput, Duration) {
         self.send_signals(arguments, after, &["INT"])
     }
 
-    /// Sends several signals in quick succession to a run, as in [`Self::interrupted`].
+    /// Sends several signals to a run in quick succession, as in [`Self::interrupted`].
     #[cfg(unix)]
     pub fn send_signals(&self, arguments: &str, after: Duration, signals: &[&str]) -> (ProgramOutput, Duration) {
         let mut command = self.command(arguments);
@@ -139,7 +140,8 @@ impl TestFolder {
         (output, start.elapsed())
     }
 
-    /// Runs a shell script in which `$DURER` is the program, for example under resource limits.
+    /// Runs a shell script in which `$DURER` stands for the program, for example under resource
+    /// limits.
     #[cfg(unix)]
     pub fn shell(&self, script: &str) -> ProgramOutput {
         let mut command = Command::new("bash");
@@ -160,7 +162,7 @@ pub fn durer() -> &'static str {
     env!("CARGO_BIN_EXE_durer")
 }
 
-/// Returns the folder with the course's scenes and pictures, if it is available.
+/// Returns the folder with the course's scenes and pictures if it is available.
 pub fn corpus() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("course");

@@ -1,25 +1,27 @@
-//! Checks of where a light's beam points.
+//! Checks where the beams of lights point.
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Ray, Vec3};
 
-/// A beam that covers at most this share of the visible points misses the scene.
+/// If a beam covers at most this fraction of the visible points, it misses the scene.
 const MIN_COVERAGE: f32 = 0.005;
-/// The limit used instead of [`MIN_COVERAGE`] if the beam is so narrow that its angle may be in radians.
+/// The limit used instead of [`MIN_COVERAGE`] if the beam is so narrow that its angle may have been
+/// given in radians.
 const MIN_COVERAGE_NARROW: f32 = 0.03;
-/// A point is in the beam if it gets more than this share of the light's peak intensity.
+/// A point is in the beam if it receives more than this fraction of the light's peak intensity.
 const IN_BEAM: f32 = 0.02;
-/// Cone angle in degrees at or below which the angle may be in radians by mistake.
+/// Cone angle, in degrees, at or below which the angle may have been given in radians by mistake.
 const NARROW_ANGLE: f32 = 3.2;
 
-/// How the beam of a spotlight or photometric light misses everything that the camera sees.
+/// The way in which the beam of a spotlight or photometric light misses everything that the camera
+/// sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum BeamMiss {
     /// The beam points away from everything visible.
     Away,
-    /// The beam points at the scene, but covers almost none of the visible points.
+    /// The beam points at the scene but covers almost none of the visible points.
     Narrow,
 }
 
@@ -38,14 +40,14 @@ pub(super) fn hit_points(grid: &ProbeGrid) -> Vec<Vec3> {
     grid.hits().map(|(probe, hit): (&Probe, &ProbeHit)| probe.ray.at(hit.t)).collect()
 }
 
-/// Returns the share of `points` that lie in the beam of a light.
+/// Returns the fraction of `points` that lie in the beam of a light.
 pub(super) fn beam_coverage(grid: &ProbeGrid, light: usize, points: &[Vec3]) -> f32 {
     let held = points.iter().filter(|point| relative_intensity(grid.world(), light, **point) > IN_BEAM).count();
     held as f32 / points.len().max(1) as f32
 }
 
-/// Returns how the beam of a light misses the visible points; `None` if it covers some of them or
-/// the light has no cone.
+/// Returns the way in which the beam of a light misses the visible points, or `None` if it covers
+/// some of them or the light has no cone.
 pub(super) fn beam_miss(grid: &ProbeGrid, light: usize) -> Option<BeamMiss> {
     let angle = grid.world().lights()[light].cone()?;
     let points = hit_points(grid);

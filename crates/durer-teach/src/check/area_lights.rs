@@ -1,4 +1,4 @@
-//! Checks for path tracing of area lights whose light does not reach the visible surfaces.
+//! Checks for path tracing that find area lights whose light does not reach the visible surfaces.
 
 use super::facing::{flip_text, flipped};
 use super::finding::{Finding, MAX_FINDINGS};
@@ -20,24 +20,24 @@ const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new
 const MIN_CONTRIBUTION: f32 = 0.1;
 const MIN_VISIBLE_SHARE: f32 = 0.03;
 
-/// Light from one area light at the visible points, with and without occlusion; each sum is of
-/// cosines at the light.
+/// Light from one area light that arrives at the visible points, with and without occlusion. Both
+/// are sums of cosines at the light.
 #[derive(Clone, Copy, Debug, Default)]
 struct AreaLightSums {
-    /// Sum over the points in front of the light that nothing occludes.
+    /// Sum over the points that are in front of the light and not occluded.
     front: f32,
     back: f32,
-    /// Sum as if nothing occluded the light.
+    /// Sum over the same points if nothing occluded the light.
     front_free: f32,
-    /// Number of rays that pass only through glass.
+    /// Number of rays that pass through glass only.
     glass: usize,
     rays: usize,
-    /// The last object found to occlude a point in front of the light.
+    /// The last object that was found to occlude a point in front of the light.
     blocker: Option<u32>,
 }
 
-/// Returns the objects that emit light and can be sampled, each with true if it emits on both
-/// sides.
+/// Returns the objects that emit light and can be sampled, each with a flag that is true if it
+/// emits on both sides.
 pub(super) fn emissive_objects(scene_probe: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scene_probe.world();
     let emits = |(number, object): (usize, &Object)| {
@@ -59,7 +59,7 @@ pub(super) fn brightest(scene_probe: &SceneProbe) -> Option<(Span, f32)> {
     lights.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns true if light can pass through an object: it is transparent, an interface, or not
+/// Returns true if light can pass through an object because it is transparent, an interface, or not
 /// opaque.
 fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
     match scene_probe.world().materials().get(scene_probe.world().objects()[object as usize].material as usize) {
@@ -72,7 +72,7 @@ fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
 }
 
 /// Returns the first opaque object between two points, and true if the ray passed through glass
-/// before it.
+/// before reaching it.
 fn first_occluder(scene_probe: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
     let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
     let mut glass = false;
@@ -85,8 +85,8 @@ fn first_occluder(scene_probe: &SceneProbe, light: u32, from: Vec3, to: Vec3) ->
     (None, glass)
 }
 
-/// Measures the light from an area light at the visible points, and returns true if the light is
-/// flat. `None` if the light consists of several parts or cannot be sampled.
+/// Measures the light from an area light that arrives at the visible points, and returns true if
+/// the light is flat. Returns `None` if the light consists of several parts or cannot be sampled.
 fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLightSums, bool)> {
     let object = &scene_probe.world().objects()[light as usize];
     let all: Vec<Vec3> =
@@ -127,7 +127,7 @@ fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLight
 }
 
 /// Returns the distance from an area light to the first hit along its normal, as a fraction of the
-/// scene's size; `None` if there is no hit.
+/// scene's size, or `None` if there is no hit.
 fn distance_along_normal(scene_probe: &SceneProbe, object: &Object) -> Option<f32> {
     let (form, normal) = emitter_of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
@@ -142,7 +142,7 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, _): (u32, bool)| {
         let object = &scene_probe.world().objects()[number as usize];
         let (contribution, flat) = measure_area_light(scene_probe, number)?;
-        // A light that illuminates the ceiling may be intended.
+        // A light that illuminates the ceiling may be intentional.
         let indirect =
             distance_along_normal(scene_probe, object).is_some_and(|far| far > 0.03) && !scene_probe.is_dark();
         if !flat || contribution.back <= 0.0 || contribution.front > MIN_CONTRIBUTION * contribution.back || indirect {
@@ -167,8 +167,8 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// Adds the edit that flips a flat area light. For a triangle there is no edit: any two of its
-/// corners can be swapped.
+/// Adds the edit that flips a flat area light. A triangle gets no edit because any two of its
+/// corners could be swapped.
 fn with_flip(scene_probe: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     match shape(&scene_probe.world().objects()[number as usize]).and_then(Shape::flip) {
         Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scene_probe, &diagnostic, number).unwrap_or(diagnostic),
@@ -212,7 +212,7 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
     lights.iter().filter_map(say).collect()
 }
 
-/// Reports area lights inside glass: paths hit them only by chance, or never.
+/// Reports area lights inside glass, which paths hit only by chance or never.
 pub(super) fn in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     if !matches!(scene_probe.input.job.method, IntegratorKind::Path(_)) {

@@ -1,4 +1,4 @@
-//! Checks of lights with attenuation: how much light arrives, and whether the divisor is positive.
+//! Checks lights with attenuation: how much light arrives, and whether the divisor is positive.
 
 use super::finding::{Finding, number, vector};
 use super::lights::{description, for_each_verdict, no_contribution, span};
@@ -26,7 +26,7 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
             let help = format!("it is {} times too weak: try `color {}`", number(factor), vector(color));
             return Some(scene_probe.at_value(diagnostic, span, &["color"]).help(help));
         };
-        // If the light's colour is plausible, the attenuation is wrong.
+        // If the light's colour is plausible, the error is in the attenuation.
         let value =
             scene_probe.field_span(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
@@ -41,12 +41,13 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
                 (value, number(falloff / factor), scene_probe.text(previous_word(scene_probe, value)))
             }
             (Some(value), None, Some(a)) => {
-                // The constant coefficient limits brightness near the light; raise it to its usual
-                // value at most.
+                // The constant coefficient limits the brightness near the light, so it is raised to
+                // its usual value at most.
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
-            // The dialect's default attenuation applies unless the scene file sets another.
+            // The default attenuation of the dialect applies unless the scene file sets another
+            // one.
             _ => match (scene_probe.field_span(span, &["color"])?, attenuation(&scene_probe.world().lights()[light])) {
                 (color, Some(a)) if scene_probe.input.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
@@ -62,8 +63,8 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Returns true if other attenuation coefficients would give the light a usual brightness at the
-/// visible surfaces.
+/// Returns true if different attenuation coefficients would give the light a usual brightness at
+/// the visible surfaces.
 fn is_usual_brightness(scene_probe: &SceneProbe, light: usize, factors: Vec3) -> bool {
     let Some(point) = point(&scene_probe.world().lights()[light]) else { return false };
     let faces = scene_probe.hits().filter(|(_, hit)| hit.contribution(light).is_some_and(|lit| lit.cosine > 0.1));
@@ -74,7 +75,7 @@ fn is_usual_brightness(scene_probe: &SceneProbe, light: usize, factors: Vec3) ->
     (0.2..4.0).contains(&left.fold(0.0, f32::max))
 }
 
-/// Returns the span of the word before a value.
+/// Returns the span of the word that precedes a value.
 fn previous_word(scene_probe: &SceneProbe, value: Span) -> Span {
     let bytes = scene_probe.input.files.bytes(value.file).unwrap_or_default();
     let head = &bytes[..value.start as usize];

@@ -1,4 +1,5 @@
-//! Checks of lights with a beam: spotlights and photometric lights that miss the visible scene.
+//! Checks lights with a beam, which are spotlights and photometric lights, for beams that miss the
+//! visible scene.
 
 use super::aim::{BeamMiss, beam_coverage, hit_points};
 use super::finding::{Finding, MAX_FINDINGS, number, percent, vector};
@@ -14,7 +15,8 @@ use durer_scene::scene::Spanned;
 pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
     missing(scene_probe, BeamMiss::Away, |diagnostic, light| {
         let point = light.value.inverse_square().map_or(Vec3::ZERO, |(point, _)| point);
-        // The visible part of a plane reaches the horizon, so aim at bounded objects only.
+        // The visible part of a plane extends to the horizon, so only bounded objects are suitable
+        // targets.
         let objects =
             scene_probe.hits().filter(|(_, hit)| scene_probe.world().objects()[hit.object as usize].bounds().is_some());
         let objects: Vec<Vec3> = objects.map(|(probe, hit)| probe.ray.at(hit.t)).collect();
@@ -22,7 +24,7 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
         let word = if light.value.profile().is_some() { "this photometric light" } else { "this spotlight" };
-        // Usually the opposite direction is the intended one.
+        // The opposite direction is usually the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - point).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - point };
@@ -82,7 +84,7 @@ fn missing(
     findings
 }
 
-/// Reports spotlights whose inner cone is wider than the outer one.
+/// Reports spotlights whose inner cone is wider than their outer cone.
 pub(super) fn inner_angle(scene_probe: &SceneProbe) -> Vec<Finding> {
     let lights = scene_probe.input.scene.lights.iter().flatten();
     let say = |light: &Spanned<Light>| {
@@ -143,8 +145,8 @@ pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
             .map(|lit| lit.contribution.max_element())
             .collect();
         let bright = lit.iter().filter(|adds| **adds > 0.04).count();
-        // Only a large surface loses light at grazing angles; lights in a fixture are close to a
-        // small one.
+        // Only a large surface loses light at grazing angles. Lights in a fixture are close to a
+        // small surface.
         let along: Vec<f32> = scene_probe
             .hits()
             .filter(|(_, hit)| hit.object == object)

@@ -6,12 +6,12 @@ use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
 
-/// Maximum number of pixels that are path traced, and the number of samples for each.
+/// Maximum number of pixels that are path traced, and number of samples for each of them.
 const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
 /// Returns exposed colours of the picture, each with the index of its probe. Whitted's method gives
-/// one colour per probe; path tracing gives the mean of `SAMPLES` samples for at most `MAX_PIXELS`
+/// one colour per probe. Path tracing gives the mean of `SAMPLES` samples for at most `MAX_PIXELS`
 /// probes.
 pub(super) fn exposed_colors(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.input.exposure;
@@ -21,7 +21,7 @@ pub(super) fn exposed_colors(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let job = grid.input.job;
     let path = Path::new(grid.world(), job.settings, transport);
     let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
-    // An odd step avoids sampling the same column in each row.
+    // An odd step avoids sampling the same columns in each row.
     let step = if step.is_multiple_of(2) { step + 1 } else { step };
     let chosen: Vec<(usize, &Probe)> = grid.probes.iter().enumerate().step_by(step).collect();
     let mean = |&(number, probe): &(usize, &Probe)| {

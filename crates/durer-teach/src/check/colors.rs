@@ -1,4 +1,4 @@
-//! Checks of colours: invisible or black materials, and values out of range.
+//! Checks colours for invisible or black materials and for values out of range.
 
 use super::finding::{Finding, MAX_FINDINGS, counted, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -15,10 +15,12 @@ const BLACK: f32 = 0.01;
 /// Colours that differ by less than this look the same.
 const SAME_COLOR: f32 = 2.0 / 255.0;
 
-/// Minimum number of rays that must hit an object before it can count as lost in the background.
+/// Minimum number of rays that must hit an object before it can count as indistinguishable from the
+/// background.
 const MIN_LOST_RAYS: usize = 6;
 
-/// Iterates over the Phong materials: index, description in the scene file, and compiled material.
+/// Iterates over the Phong materials. Each item has the index, the description in the scene file,
+/// and the compiled material.
 fn phongs<'s>(scene_probe: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<ParsedMaterial>, &'s Phong)> {
     let compiled = scene_probe.world().materials().iter();
     let both = scene_probe.input.scene.materials.iter().zip(compiled).enumerate();
@@ -28,7 +30,7 @@ fn phongs<'s>(scene_probe: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spa
     })
 }
 
-/// Returns the number of rays that hit a material, directly or as part of a mix.
+/// Returns the number of rays that hit a material, either directly or as part of a mix.
 fn rays(scene_probe: &SceneProbe, material: u32) -> usize {
     scene_probe.material_rays()[material as usize]
 }
@@ -54,7 +56,7 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let all = scene_probe.hits().count();
     let whole = all_black(scene_probe);
-    // Part of a pattern may be black, but not all of it.
+    // Part of a pattern may be black, but not the whole pattern.
     let shown =
         |i: u32| if whole { rays(scene_probe, i) > 0 } else { scene_probe.hits().any(|(_, hit)| hit.material == i) };
     let black: Vec<_> = phongs(scene_probe).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
@@ -72,7 +74,7 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     black.iter().take(MAX_FINDINGS).map(say).collect()
 }
 
-/// Reports mirrors and glass in a picture without secondary rays.
+/// Reports mirrors and glass in a picture that is rendered without secondary rays.
 pub(super) fn no_bounces(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.is_physical() {
         return super::optics::short_paths(scene_probe);
@@ -125,8 +127,8 @@ pub(super) fn no_bounces(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![finding.affecting_whole_picture(whole)]
 }
 
-/// Reports mirrors and glass objects whose secondary rays are disabled by the options, or
-/// terminated inside the object by the depth limit.
+/// Reports mirrors and glass objects whose secondary rays are disabled by the options or are ended
+/// by the depth limit inside the object.
 fn switched_off(scene_probe: &SceneProbe, all: &[(u32, &Spanned<ParsedMaterial>, &Phong)]) -> Vec<Finding> {
     let settings = &scene_probe.input.job.settings;
     let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
@@ -139,7 +141,7 @@ fn switched_off(scene_probe: &SceneProbe, all: &[(u32, &Spanned<ParsedMaterial>,
             true if !settings.refraction => {
                 (format!("material {i} transmits light, but refracted rays are disabled"), "remove `--no-refraction`")
             }
-            // Light needs one bounce to enter and one to leave.
+            // Light needs one bounce to enter an object and one to leave it.
             true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
                 format!("material {i} is glass, but the maximum depth of secondary rays is 1: light cannot leave it"),
                 "set `--bounces 4` (in the course's programs `-bounces 4`)",
@@ -217,7 +219,7 @@ struct ColorField {
     color: Color,
     block: Span,
     fields: [&'static str; 2],
-    /// Largest plausible value of a channel.
+    /// Largest plausible value of a colour channel.
     most: f32,
 }
 
@@ -225,8 +227,8 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
     let mut colors = Vec::new();
     for (i, material, used) in phongs(scene_probe) {
         let ParsedMaterial::Phong(phong, _) = &material.value else { continue };
-        // A surface reflects at most the light it receives, but a small bright object may represent
-        // a light.
+        // A surface reflects at most the light that it receives, but a small bright object may
+        // represent a light.
         let small = rays(scene_probe, i) * 25 < scene_probe.probes.len();
         let named = |color, fields, most: f32| {
             let most = if small { most.max(15.0) } else { most };
@@ -234,8 +236,8 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
         let all = |color, fields, most: f32| ColorField { color, block: material.span, fields, most };
-        // A highlight may be slightly brighter than white; a mirror reflects at most the light it
-        // receives.
+        // A highlight may be slightly brighter than white. A mirror reflects at most the light that
+        // it receives.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
@@ -250,7 +252,7 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
             (m.coat_color, "coatColor"),
             (m.fuzz_color, "fuzzColor"),
         ];
-        // Presets of measured metals slightly exceed 1.
+        // Presets for measured metals slightly exceed 1.
         colors.extend(shares.map(|(color, field)| ColorField {
             color,
             block: material.span,
@@ -261,8 +263,8 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
     for (number, (material, light)) in
         scene_probe.input.scene.lights.iter().flatten().zip(scene_probe.world().lights()).enumerate()
     {
-        // A light with attenuation may be strong if not too much of its light arrives. Lights in
-        // candela rarely have values near 1.
+        // A light with attenuation may be strong as long as not too much of its light arrives.
+        // Lights in candela rarely have values near 1.
         let (fades, candela) = match light {
             Light::Directional(_) => (false, false),
             Light::Point(point) => (point.attenuation.is_some(), false),
@@ -271,7 +273,7 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
         let arrives =
             scene_probe.hits().filter_map(|(_, hit)| hit.contribution(number)).map(|lit| lit.unoccluded.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
-        // Path tracing has no fixed unit of light: the exposure scales it.
+        // Path tracing has no fixed unit of light because the exposure scales it.
         let free = candela || fades && !too_much || scene_probe.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(ColorField { color: light.color(), block: material.span, fields: ["color", "color"], most });
@@ -279,14 +281,14 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
     colors
 }
 
-/// Reports colours from 0 to 255.
+/// Reports colours whose channels range from 0 to 255.
 pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
-        // Whole numbers, some of them large, are probably bytes.
+        // Whole numbers are probably byte values if some of them are large.
         let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
-        // Multiples of 5 up to 100 may also be percent.
+        // Multiples of 5 up to 100 may also be percentages.
         let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let far = color.max_element() > 2.0;
@@ -329,7 +331,7 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Returns a warning for the most visible material whose diffuse, reflective and transparent
+/// Returns a warning about the most visible material whose diffuse, reflective and transparent
 /// colours add up to more than 1.
 pub(super) fn energy_gain(scene_probe: &SceneProbe) -> Option<Diagnostic> {
     let bounces = scene_probe.input.job.settings.bounces > 0;
@@ -354,7 +356,7 @@ pub(super) fn energy_gain(scene_probe: &SceneProbe) -> Option<Diagnostic> {
     ))
 }
 
-/// Reports glass whose colour absorbs all light, in dialects where that colour scales reflection
+/// Reports glass whose colour absorbs all light, in dialects in which that colour scales reflection
 /// and transmission.
 pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.is_physical() {
@@ -382,7 +384,7 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     phongs(scene_probe).filter(dull).take(MAX_FINDINGS).map(say).collect()
 }
 
-/// Reports glass with an index of refraction but no transmission colour.
+/// Reports glass that has an index of refraction but no transmission colour.
 fn dull_by_color(scene_probe: &SceneProbe) -> Vec<Finding> {
     let dull = |(i, material, phong): &(u32, &Spanned<ParsedMaterial>, &Phong)| match &material.value {
         ParsedMaterial::Phong(own, _) => {
@@ -418,7 +420,7 @@ pub(super) fn background_span(scene_probe: &SceneProbe) -> Option<Span> {
     durer_formats::course::place::section(scene_probe.input.files.bytes(file)?, file, "Background")
 }
 
-/// Reports colours below zero.
+/// Reports colours with negative channels.
 pub(super) fn negative(scene_probe: &SceneProbe) -> Vec<Finding> {
     let below = |named: &ColorField| named.color.min_element() < 0.0;
     let say = |ColorField { color, block, fields, .. }: ColorField| {
@@ -464,11 +466,11 @@ pub(super) fn background_colored(scene_probe: &SceneProbe) -> Vec<Finding> {
         false => "choose another `color` for the background, or for the materials",
     });
     let finding = Finding::from(diagnostic);
-    // If no light arrives, that is the cause, and this finding only follows from it.
+    // If no light arrives, that is the cause, and this finding is only a consequence.
     vec![if black { finding.only_describing() } else { finding.affecting_whole_picture(true) }]
 }
 
-/// Reports objects all of whose visible pixels have exactly the background's colour.
+/// Reports objects if all of their visible pixels have exactly the background's colour.
 fn lost_in_background(scene_probe: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scene_probe.world();
     if world.background().max_element() < 0.02 || scene_probe.is_physical() {
@@ -476,7 +478,7 @@ fn lost_in_background(scene_probe: &SceneProbe, alike: &dyn Fn(Color) -> bool) -
     }
     let say = |(number, object): (usize, &durer_render::world::Object)| {
         let mut own = scene_probe.hits().filter(|(_, hit)| hit.object as usize == number).peekable();
-        // A mirror may show the background.
+        // A mirror may be showing the background.
         let Material::Phong(phong) = world.materials().get(object.material as usize)? else { return None };
         let own_color = phong.reflective == Color::ZERO && phong.transparent == Color::ZERO && phong.texture.is_none();
         own.peek()?;
@@ -532,7 +534,7 @@ pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
             _ => used[object.material as usize] = true,
         }
     }
-    // A mix refers only to earlier materials, so iterate backwards.
+    // A mix refers only to materials that precede it, so the loop runs backwards.
     for i in (0..world.materials().len()).rev() {
         if let (Material::Mix(solid, ..), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

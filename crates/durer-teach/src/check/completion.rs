@@ -1,5 +1,5 @@
-//! Completes the diagnostics of the reader and the compiler with effects and edits that need the
-//! whole scene.
+//! Adds effects and edits that depend on the whole scene to the diagnostics of the reader and the
+//! compiler.
 
 use super::finding::{Finding, vector};
 use super::scene_probe::SceneProbe;
@@ -10,7 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
-/// Adds an effect, help or edits from the compiled scene to a finding.
+/// Adds an effect, help or edits to a finding, based on the compiled scene.
 pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scene_probe, finding),
@@ -46,8 +46,8 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Adds help about placement. The node grammar places an object with the node around it; other
-/// dialects place it with the object's own fields.
+/// Adds help about placing objects. In the node grammar, the surrounding node places an object. In
+/// other dialects, the object's own fields do.
 fn foreign_in_nodes(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scene_probe.text(span)).unwrap_or_default();
@@ -99,8 +99,8 @@ fn up_parallel(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Suggests a material index. If an index is one too large, or there is only one material, the
-/// correction is certain.
+/// Suggests a material index. If an index is too large by one, or if there is only one material,
+/// the correction is certain.
 fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scene_probe.input.scene.materials.len();
@@ -125,8 +125,8 @@ fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Corrects all indices if no object uses material 0 and an object uses the index after the last,
-/// which means that they are counted from 1.
+/// Corrects all indices if no object uses material 0 and some object uses the index after the last
+/// one. This means that the indices start at 1.
 fn from_one(scene_probe: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scene_probe.input.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
@@ -148,7 +148,7 @@ fn no_material(scene_probe: &SceneProbe, finding: &mut Finding) {
     let scene = scene_probe.input.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
     let nodes = scene_probe.input.dialect == durer_scene::dialect::Dialect::F23;
-    // At the top of the group it applies to all objects without their own index.
+    // At the top of the group, it applies to all objects that do not have an index of their own.
     if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
         let place = Span { end: first.span.start, ..first.span };
         finding.diagnostic = finding.diagnostic.clone().fix(place, "MaterialIndex 0 ");

@@ -1,4 +1,4 @@
-//! Tests which objects contain a point.
+//! Determines which objects contain a point.
 
 use durer_render::world::World;
 use durer_scene::math::{Ray, Ray64, Vec3};
@@ -12,8 +12,8 @@ const DIRECTIONS: [Vec3; 5] = [
     Vec3::new(0.687, 0.173, -0.706),
 ];
 
-/// Returns the bounded objects that contain a point: a ray in each test direction crosses their
-/// surface an odd number of times.
+/// Returns the bounded objects that contain a point. A ray from such a point in each test direction
+/// crosses the surface an odd number of times.
 pub(super) fn containing_objects(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects()[*object as usize].bounds();
@@ -24,7 +24,7 @@ pub(super) fn containing_objects(world: &World, point: Vec3) -> Vec<u32> {
         if inside.is_empty() {
             break;
         }
-        // Test each object on its own: where two surfaces coincide, a ray hits only one of them.
+        // Test each object separately, because a ray hits only one of two surfaces that coincide.
         inside.retain(|&object| {
             let mut rest = Ray64::from(Ray::new(point, direction));
             let crossings = std::iter::from_fn(|| {

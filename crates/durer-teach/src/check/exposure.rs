@@ -1,5 +1,5 @@
-//! Checks of exposure: pictures that are too bright, too dark or of a single colour, and depth
-//! ranges that show only black or white.
+//! Checks the exposure. They find pictures that are too bright, too dark or of a single colour, and
+//! depth ranges that show only black or white.
 
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
@@ -11,17 +11,18 @@ use durer_diag::{Diagnostic, Severity};
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
-/// Values above `MAX_UNCLIPPED` are clipped to white; above `FAR_ABOVE_WHITE` most shading is lost.
+/// Values above `MAX_UNCLIPPED` are clipped to white. Above `FAR_ABOVE_WHITE`, most of the shading
+/// is lost.
 const MAX_UNCLIPPED: f32 = 1.0 + VISIBLE;
 const FAR_ABOVE_WHITE: f32 = 1.25;
-/// Maximum fractions of visible points that may be clipped, or far too bright. Above these, more
-/// than highlights is affected.
+/// Maximum fractions of visible points that may be clipped or far too bright. Above these
+/// fractions, more than the highlights is affected.
 const MAX_CUT: f32 = 0.4;
 const MAX_FAR: f32 = 0.2;
 
-/// Maximum share of white pixels in a usable picture.
+/// Maximum fraction of white pixels in a usable picture.
 const MAX_WHITE: f32 = 0.5;
-/// Maximum share of white points on lit surfaces, whatever the background looks like.
+/// Maximum fraction of white points on lit surfaces, regardless of the background.
 const MAX_WHITE_SURFACES: f32 = 0.8;
 
 /// Converts a ratio of luminances to stops.
@@ -31,7 +32,7 @@ fn stops_of(factor: f32) -> f32 {
 
 /// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that is clipped to white.
 fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
-    // Emitters can be white, and an unlit background does not count.
+    // Emitters may be white, and an unlit background does not count.
     let lit = |probe: &Probe| probe.hit.as_ref().is_some_and(|hit| !scene_probe.world().may_emit(hit.material));
     let all = scene_probe.exposed_colors();
     let objects: Vec<Color> =
@@ -87,7 +88,7 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
-    // Keep the ambient light, unless it alone is too much.
+    // Keep the ambient light unless it is too strong on its own.
     let world = scene_probe.world();
     let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
@@ -104,7 +105,7 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
                  .hdr)",
                 number(factor)
             ));
-    // If the lights alone are too strong, do not blame a material.
+    // If the lights are too strong on their own, no material is blamed.
     let local =
         |hit: &ProbeHit| (hit.ambient + hit.lights.iter().map(|lit| lit.contribution).sum::<Color>()).max_element();
     let by_lights = scene_probe.hits().filter(|(_, hit)| local(hit) > FAR_ABOVE_WHITE).count();
@@ -115,7 +116,7 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     for (i, light) in world.lights().iter().enumerate() {
         let Some(span) = span(scene_probe, i) else { continue };
-        // A light with almost no attenuation is not too bright itself.
+        // A light that is almost without attenuation is not too bright itself.
         let faded = scene_probe.field_span(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
         if let (Some(value), Some(a)) = (faded, super::verdict::attenuation(light)) {
             let single = scene_probe.text(value).split_whitespace().count() == 1;
@@ -138,7 +139,7 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())]
 }
 
-/// Reports a picture of a single colour.
+/// Reports a picture that has a single colour.
 pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
     let clamped = |color: Color| color.clamp(Color::ZERO, Color::ONE);
     let mut colors = scene_probe.exposed_colors().iter().map(|color| clamped(*color));
@@ -152,7 +153,7 @@ pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
         _ => format!("uniformly {}", vector(first)),
     };
     let empty = scene_probe.hits().next().is_none();
-    // Probes can miss small objects that are visible.
+    // Probes can miss small visible objects.
     if empty && scene_probe.visibilities().contains(&super::visibility::Visibility::Visible) {
         return Vec::new();
     }
@@ -187,7 +188,7 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).only_describing()]
 }
 
-/// Reports a path tracer's picture that is almost black.
+/// Reports a path-traced picture that is almost black.
 fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
     if !scene_probe.is_dark() {
         return Vec::new();
@@ -231,7 +232,7 @@ pub(super) fn depth_range(scene_probe: &SceneProbe) -> Vec<Finding> {
         return vec![Finding::from(diagnostic.help(help))];
     }
     let outside = depths.iter().filter(|t| **t <= low || **t >= high).count();
-    // A range that is far too wide maps all depths to one grey.
+    // A range that is far too wide maps all depths to the same grey.
     let flat = (most - least) < 0.02 * (high - low) && most > least;
     if depths.is_empty() || outside * 20 < depths.len() * 19 && !flat {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! Checks of size: objects too small or too large to be visible, and unsuitable fields of view.
+//! Checks sizes: objects that are too small or too large to be visible, and unsuitable fields of
+//! view.
 
 use super::finding::{Finding, MAX_FINDINGS, number};
 use super::scene_probe::SceneProbe;
@@ -11,10 +12,10 @@ use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Aabb, Vec3, fp};
 use durer_scene::scene::{MatrixOp, Object, ObjectKind};
 
-/// Minimum size in pixels of a recognisable object.
+/// Minimum size, in pixels, of a recognisable object.
 const MIN_PIXELS: f32 = 6.0;
-/// Ratios to the typical size above which an object is out of scale: for harmless objects, and for
-/// objects that spoil the picture.
+/// Ratios to the typical size above which an object is out of scale, one for harmless objects and
+/// one for objects that spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
 /// Size ratio above which an object that contains the camera is out of scale.
@@ -30,7 +31,8 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     };
     let empty = scene_probe.hits().next().is_none();
-    // A very wide field of view is meant to show a lot, not a few small objects in the centre.
+    // A very wide field of view is meant to show a large area, not a few small objects in the
+    // centre.
     let share = match scene_probe.world().camera() {
         Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
         Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
@@ -112,7 +114,7 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
             vec![Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true)]
         }
         Camera::Orthographic(camera) => {
-            // A picture filled by the surface of a single object shows nothing useful.
+            // A picture that the surface of a single object fills shows nothing useful.
             let mut hit: Vec<u32> = scene_probe.hits().map(|(_, hit)| hit.object).collect();
             hit.sort_unstable();
             hit.dedup();
@@ -131,7 +133,7 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
 }
 
-/// Reports a narrow field of view filled by one object, with most others outside it.
+/// Reports a narrow field of view that one object fills while most other objects are outside it.
 fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let Camera::Perspective(camera) = scene_probe.world().camera() else { return None };
     let visibilities = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
@@ -151,7 +153,7 @@ fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Findi
     Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
 }
 
-/// Returns the ratio of an object's size to that of the largest other object, if above
+/// Returns the ratio of an object's size to that of the largest other object if it exceeds
 /// `MAX_ENCLOSING_RATIO`.
 pub(super) fn times_larger(scene_probe: &SceneProbe, object: u32) -> Option<f32> {
     let size = |i: usize| Some(scene_probe.world().objects()[i].bounds()?.size().max_element());
@@ -160,8 +162,8 @@ pub(super) fn times_larger(scene_probe: &SceneProbe, object: u32) -> Option<f32>
     (times > MAX_ENCLOSING_RATIO && times.is_finite()).then_some(times)
 }
 
-/// Returns true if a large object spoils the picture: it is not visible despite its size, or it
-/// hides other objects or blocks light.
+/// Returns true if a large object spoils the picture. Either it is not visible despite its size, or
+/// it hides other objects or blocks light.
 fn spoils_picture(scene_probe: &SceneProbe, object: u32) -> bool {
     let visibilities = scene_probe.visibilities();
     let hides = visibilities.contains(&Visibility::Hidden(object));
@@ -188,14 +190,14 @@ fn encloses_camera(scene_probe: &SceneProbe, object: u32) -> bool {
     harms && super::containment::containing_objects(scene_probe.world(), eye).contains(&object)
 }
 
-/// Returns true if the camera is inside an object that can be neither a sky nor a room: a ground
-/// ball that reaches too high, or a dark shell.
+/// Returns true if the camera is inside an object that can be neither a sky nor a room. This is a
+/// ground ball that reaches too high, or a dark shell.
 pub(super) fn encloses_camera_wrongly(scene_probe: &SceneProbe, object: u32) -> bool {
     is_ground(scene_probe, object) || is_dark_shell(scene_probe, object)
 }
 
-/// Returns true if an object around the camera is a ball meant as the ground: it is far larger than
-/// everything else, and the camera is near its top, far from its centre.
+/// Returns true if an object around the camera is a ball that represents the ground. It is far
+/// larger than everything else, and the camera is near its top and far from its centre.
 fn is_ground(scene_probe: &SceneProbe, object: u32) -> bool {
     let own = &scene_probe.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
@@ -206,7 +208,7 @@ fn is_ground(scene_probe: &SceneProbe, object: u32) -> bool {
     times_larger(scene_probe, object).is_some() && off.length() > 0.8 * radius && high
 }
 
-/// Returns true if an object around the camera is far larger than everything else, and too dark for
+/// Returns true if an object around the camera is far larger than everything else and too dark for
 /// a sky or a room.
 fn is_dark_shell(scene_probe: &SceneProbe, object: u32) -> bool {
     let own = &scene_probe.world().objects()[object as usize];
@@ -224,8 +226,8 @@ fn is_dark_shell(scene_probe: &SceneProbe, object: u32) -> bool {
     dark * 10 >= all * 9
 }
 
-/// Returns true if an object is a sky: a large ball around the camera that blocks lights outside
-/// it, and only those.
+/// Returns true if an object is a sky. A sky is a large ball around the camera that blocks lights
+/// outside it and nothing else.
 fn is_sky_before_lights(scene_probe: &SceneProbe, object: u32) -> bool {
     let own = &scene_probe.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
@@ -239,7 +241,7 @@ fn is_sky_before_lights(scene_probe: &SceneProbe, object: u32) -> bool {
         && (eye - bounds.center()).length() < 0.25 * bounds.size().max_element()
 }
 
-/// Reports objects far larger or smaller than most.
+/// Reports objects that are far larger or smaller than most others.
 pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let sized = |(i, object): (usize, &durer_render::world::Object)| {
@@ -263,7 +265,7 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     if sizes.len() < 2 || !lost.is_empty() {
         return lost;
     }
-    // Of two objects, trust the one whose size fits its distance from the camera.
+    // Of two objects, the one whose size fits its distance from the camera is more credible.
     let eye = world.camera().pose().center;
     let away = |object: u32| world.objects()[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
     let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
@@ -282,8 +284,8 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     let holds_eye = |object: u32| around.contains(&object) && encloses_camera_wrongly(scene_probe, object);
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
-        // Either of the two objects may be wrong: the small one is invisible, or the large one
-        // hides others.
+        // Either of the two objects may be wrong. The small one may be invisible, or the large one
+        // may hide others.
         let spoils = size > middle && spoils_picture(scene_probe, object);
         if findings.len() >= MAX_FINDINGS
             || ratio
@@ -297,8 +299,8 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
-        // A huge ball can be the ground or the sky. Other checks report objects around the camera
-        // and lights outside a sky.
+        // A huge ball can represent the ground or the sky. Other checks report objects around the
+        // camera and lights outside a sky.
         if size > middle && (!spoils || holds_eye(object) || is_sky_before_lights(scene_probe, object)) {
             continue;
         }
@@ -350,8 +352,8 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
     })]
 }
 
-/// A rotation in the scene file: span of its transform, its possible keywords, and its angle in
-/// degrees.
+/// A rotation in the scene file, with the span of its transform, its possible keywords, and its
+/// angle in degrees.
 type Rotation = (Span, [&'static str; 2], f32);
 
 fn rotations(object: &Object, angles: &mut Vec<Rotation>) {

@@ -1,4 +1,5 @@
-//! Checks for coplanar faces that overlap, where the visible one is random (z-fighting).
+//! Checks for coplanar faces that overlap, so that it is random which of them is visible
+//! (z-fighting).
 
 use super::scene_probe::SceneProbe;
 use super::shapes::shape;
@@ -7,10 +8,10 @@ use durer_scene::camera::Projection;
 use durer_scene::math::Vec3;
 use durer_scene::shape::Shape as _;
 
-/// Maximum number of objects for this check.
+/// Maximum number of objects for which this check runs.
 const MAX_OBJECTS: usize = 300;
 
-/// A flat face of a box or rectangle in world space, compared with others to find coplanar
+/// A flat face of a box or rectangle in world space, which is compared with others to find coplanar
 /// overlaps. `outward_normal` is its normal if only that side can be visible.
 struct Face {
     object: usize,
@@ -28,7 +29,7 @@ fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     let world = |corners: &[Vec3]| corners.iter().map(|p| object.world_point(*p)).collect::<Vec<Vec3>>();
     let Some(shape) = shape(object) else { return Vec::new() };
     let polygons = shape.polygons();
-    // Triangles often come in hundreds and share edges. They are only compared with planes, in
+    // Triangles often come in hundreds and share edges. They are compared only with planes, in
     // `objects::in_plane`.
     let mut faces: Vec<Face> = polygons
         .iter()
@@ -56,8 +57,8 @@ fn overlap(a: &Face, b: &Face) -> bool {
     if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
         return false;
     }
-    // Convex faces are disjoint if an edge of either separates them. Faces that only touch count as
-    // disjoint.
+    // Convex faces are disjoint if an edge of either face separates them. Faces that only touch
+    // each other count as disjoint.
     let separates = |one: &Face, other: &Face| {
         let count = one.corners.len();
         (0..count).any(|i| {

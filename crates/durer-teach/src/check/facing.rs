@@ -1,4 +1,4 @@
-//! Checks of orientation: surfaces seen from behind, and triangles with reversed winding in the
+//! Checks orientation: surfaces seen from behind, and triangles whose winding is reversed in the
 //! scene file.
 
 use super::finding::{Finding, MAX_FINDINGS, counted};
@@ -11,7 +11,7 @@ use durer_scene::describe::{DescribedKind as _, Value};
 use durer_scene::math::{Affine, Vec3};
 use durer_scene::shape::{Flip, Shape as _};
 
-/// Describes the edit that makes a flat shape face the other way.
+/// Describes the edit that makes a flat shape face the opposite way.
 pub(super) fn flip_text(flip: Flip) -> String {
     match flip {
         Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("swap `{a}` and `{b}`"),
@@ -23,8 +23,8 @@ pub(super) fn flip_text(flip: Flip) -> String {
     }
 }
 
-/// Adds the edit that flips a flat shape. `None` if the shape is not flat, or the scene file does
-/// not set the field to change.
+/// Adds the edit that flips a flat shape. Returns `None` if the shape is not flat or if the scene
+/// file does not set the field to change.
 pub(super) fn flipped(scene_probe: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
     let shape = shape(&scene_probe.world().objects()[object as usize])?;
     let value = |field: &str| scene_probe.field_span(scene_probe.object_span(object), &[field]);
@@ -64,8 +64,8 @@ fn with_flip(scene_probe: &SceneProbe, diagnostic: Diagnostic, object: u32) -> D
     }
 }
 
-/// Reports objects that are seen only from behind: a warning if backs are not shaded, otherwise a
-/// note for flat shapes, whose front was probably meant to be visible.
+/// Reports objects that are seen only from behind. This is a warning if back faces are not shaded.
+/// Otherwise, it is a note for flat shapes, whose front was probably meant to be visible.
 pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
     let shaded = scene_probe.input.job.settings.shade_back;
     let is_flat = |i: usize| course_flip(&scene_probe.world().objects()[i]).is_some();
@@ -77,7 +77,7 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
         black |= surface.unshaded_back;
     }
     let all: usize = seen.iter().sum();
-    // If `hidden-behind` reports something, skip this finding: the cause is the same.
+    // If `hidden-behind` reports something, this finding is skipped because the cause is the same.
     if !super::hidden::hidden(scene_probe).is_empty() {
         return Vec::new();
     }
@@ -93,8 +93,8 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
             let note = Diagnostic::note(message)
                 .at(scene_probe.object_span(i as u32))
                 .effect("a ray tracer that does not shade back faces, such as the course's without `-shade_back`, leaves it black");
-            // Negating a plane's normal and offset gives the same plane, which looks the same if
-            // backs are shaded.
+            // If the normal and offset of a plane are negated, the plane stays the same. It also
+            // looks the same if back faces are shaded.
             return Finding::from(if plane(&scene_probe.world().objects()[i]).is_some() {
                 note
             } else {
@@ -114,7 +114,7 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
     turned_away.take(MAX_FINDINGS).map(say).collect()
 }
 
-/// Reports connected triangles of the scene file whose winding is opposite to that of most others.
+/// Reports connected triangles in the scene file whose winding is opposite to that of most others.
 pub(super) fn turned_triangles(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
     for (i, object) in scene_probe.world().objects().iter().enumerate() {

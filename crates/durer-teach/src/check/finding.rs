@@ -1,10 +1,10 @@
-//! The result of a check, and helpers for its wording.
+//! The result of a check, and helper functions for its wording.
 
 use durer_diag::{Diagnostic, Edit, Severity};
 pub(super) use durer_render::render::explain::number;
 use durer_scene::math::Vec3;
 
-/// Maximum number of findings of one kind that are reported one by one.
+/// Maximum number of findings of one kind that are reported individually.
 pub(super) const MAX_PER_KIND: usize = 3;
 /// Number of findings of one kind after which a check stops.
 pub(super) const MAX_FINDINGS: usize = 50;
@@ -13,12 +13,12 @@ pub(super) const MAX_FINDINGS: usize = 50;
 /// that fixes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Code, span, message, and the edit that fixes it.
+    /// Code, span, message, and the edit that fixes the problem.
     pub diagnostic: Diagnostic,
-    /// True if it affects the whole picture, not only part of it.
+    /// True if the finding affects the whole picture and not only part of it.
     pub affects_whole_picture: bool,
-    /// True if it only describes the picture. It is dropped if another finding explains the whole
-    /// picture.
+    /// True if the finding only describes the picture. Such a finding is dropped if another finding
+    /// explains the whole picture.
     pub(super) only_describes: bool,
 }
 
@@ -29,7 +29,8 @@ impl From<Diagnostic> for Finding {
 }
 
 impl Finding {
-    /// Returns true for warnings and errors: the picture is wrong or cannot be rendered.
+    /// Returns true for warnings and errors, which mean that the picture is wrong or cannot be
+    /// rendered.
     pub fn is_serious(&self) -> bool {
         self.diagnostic.severity > Severity::Note
     }
@@ -39,7 +40,7 @@ impl Finding {
         Finding { affects_whole_picture: whole, ..self }
     }
 
-    /// Marks the finding as a description that is dropped if another finding explains the whole
+    /// Marks the finding as a description, which is dropped if another finding explains the whole
     /// picture.
     pub(super) fn only_describing(self) -> Self {
         Finding { only_describes: true, affects_whole_picture: true, ..self }
@@ -59,7 +60,7 @@ pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Findin
     diagnostic.fix.extend(others);
 }
 
-/// Formats a vector as scene files write it.
+/// Formats a vector in the way scene files write it.
 pub(super) fn vector(v: Vec3) -> String {
     format!("{} {} {}", number(v.x), number(v.y), number(v.z))
 }
@@ -70,7 +71,7 @@ pub(super) fn percent(part: usize, of: usize) -> String {
     if share > 0.0 && share < 1.0 { "less than 1 %".into() } else { format!("{share:.0} %") }
 }
 
-/// Formats a count with its noun.
+/// Formats a count together with its noun.
 pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
     if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
 }

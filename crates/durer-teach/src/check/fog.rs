@@ -1,4 +1,4 @@
-//! Checks of fog that is too dense or outside the picture.
+//! Checks for fog that is too dense or outside the picture.
 
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
-/// Fog that transmits less than this fraction counts as opaque.
+/// Fog that transmits less than this fraction of the light counts as opaque.
 const OPAQUE: f32 = 0.01;
 
 /// Reports a fog box that no camera ray crosses before it hits a surface.

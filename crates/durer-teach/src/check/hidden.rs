@@ -1,4 +1,4 @@
-//! Checks for a single object, often a plane, that hides all or most others.
+//! Checks for a single object, often a plane, that hides all or most of the others.
 
 use super::finding::{Finding, counted, number, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -9,16 +9,16 @@ use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Ray, Vec3};
 
-/// In scenes with more objects than this, a single one is not blamed.
+/// If a scene has more objects than this, a single object is not blamed.
 const FEW_OBJECTS: usize = 8;
 
-/// Reports one object that hides all, or almost all, others.
+/// Reports one object that hides all, or almost all, of the others.
 pub(super) fn hidden_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
     let findings = hidden(scene_probe);
     if findings.is_empty() { obstructing_object(scene_probe) } else { findings }
 }
 
-/// Reports one object that hides all others.
+/// Reports one object that hides all of the others.
 pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut hits = scene_probe.hits().map(|(_, hit)| hit.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
@@ -41,7 +41,7 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let name = scene_probe.object(front);
     let behind = scene_probe.hits().all(|(_, hit)| hit.from_behind);
-    // The rays of some cameras are infinite lines, which also hit objects behind the camera.
+    // The rays of some cameras are infinite lines, so they also hit objects behind the camera.
     let backwards = !has_eye(scene_probe) && scene_probe.hits().all(|(_, hit)| hit.t < 0.0);
     // If the visible side is the back, the camera is probably on the wrong side instead.
     let turned = (is_plane && !behind).then(|| negated_offset(scene_probe, front)).flatten();
@@ -72,7 +72,7 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
-/// Reports one object close to the camera that covers most of the picture and the other objects.
+/// Reports one object close to the camera that covers most of the picture and of the other objects.
 fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
     let objects = scene_probe.world().objects();
     let mut counts = vec![0; objects.len()];
@@ -89,8 +89,8 @@ fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table contains the other objects. An obstacle is far in front of them and hides
-    // almost all of them.
+    // A room or a table contains the other objects. An obstacle is far in front of the other
+    // objects and hides almost all of them.
     let eye = scene_probe.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
@@ -175,8 +175,8 @@ pub(super) fn below_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
-/// Returns the plane between the camera and an object. It hides the object whatever the camera's
-/// direction.
+/// Returns the plane that separates the camera from an object. The plane hides the object, whatever
+/// direction the camera has.
 pub(super) fn plane_before(scene_probe: &SceneProbe, object: &Object) -> Option<u32> {
     let world = scene_probe.world();
     let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
@@ -184,7 +184,7 @@ pub(super) fn plane_before(scene_probe: &SceneProbe, object: &Object) -> Option<
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
-/// Returns the camera's mirror image in a plane, if the camera is below the plane and all objects
+/// Returns the camera's mirror image in a plane if the camera is below the plane and all objects
 /// stand on it.
 fn mirrored_eye(scene_probe: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = world_plane(scene_probe, object)?;
@@ -206,7 +206,7 @@ pub(super) fn world_plane(scene_probe: &SceneProbe, object: u32) -> Option<(Vec3
     Some((n, on.dot(n)))
 }
 
-/// Returns the only plane of the scene, if it faces up and the camera and all objects are below it.
+/// Returns the only plane of the scene if it faces up and the camera and all objects are below it.
 fn ceiling(scene_probe: &SceneProbe) -> Option<u32> {
     let world = scene_probe.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
@@ -222,7 +222,7 @@ fn ceiling(scene_probe: &SceneProbe) -> Option<u32> {
     (faces_up && all && hit && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
 
-/// Returns the span of a plane's offset and the negated value, if negating it puts the camera and
+/// Returns the span of a plane's offset and the negated offset if negating it puts the camera and
 /// the objects on the same side.
 fn negated_offset(scene_probe: &SceneProbe, object: u32) -> Option<(Span, String)> {
     let plane_object = &scene_probe.world().objects()[object as usize];

@@ -13,14 +13,15 @@ use durer_render::world::Material;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material as ParsedMaterial;
 
-/// Radiance below which a surface is black in eight bits.
+/// Radiance below which a surface is black in an eight-bit picture.
 const BLACK: f32 = 0.001;
-/// Minimum number of black surface samples, in tenths, for the picture to count as black.
+/// Minimum number of tenths of the surface samples that must be black for the picture to count as
+/// black.
 const MIN_BLACK_TENTHS: usize = 9;
 /// Minimum number of surface samples needed for a conclusion.
 const MIN_SAMPLES: usize = 20;
 
-/// Reports a scene whose only light is of a kind that Whitted's method does not support.
+/// Reports a scene whose lights are all of a kind that Whitted's method does not support.
 pub(super) fn wrong_integrator(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     if !matches!(scene_probe.input.job.method, IntegratorKind::Whitted(_)) || !world.lights().is_empty() {
@@ -59,8 +60,8 @@ pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(alone)]
 }
 
-/// Reports a path-traced picture in which nearly all surfaces are black although the scene has
-/// light.
+/// Reports a path-traced picture in which nearly all surfaces are black although the scene contains
+/// lights.
 pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     if !scene_probe.is_physical() || scene_probe.is_dark() || scene_probe.world().fog().is_some() {
         return Vec::new();
@@ -96,8 +97,8 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]
 }
 
-/// Reports mirrors with nothing to reflect: only mirrors are visible, and their surroundings are
-/// black.
+/// Reports mirrors that have nothing to reflect because only mirrors are visible and their
+/// surroundings are black.
 pub(super) fn nothing_mirrored(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.is_physical() || scene_probe.input.job.settings.bounces == 0 {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! Checks for invisible objects: outside the picture, hidden, far away, too small, or flat.
+//! Checks for objects that are invisible because they are outside the picture, hidden, far away,
+//! too small, or flat.
 
 use super::finding::{Finding, MAX_FINDINGS, counted, number, vector};
 use super::scene_probe::SceneProbe;
@@ -10,7 +11,7 @@ use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::ObjectKind;
 
-/// In scenes with more objects than this, some objects can be out of sight on purpose.
+/// If a scene has more objects than this, some of them may be out of sight on purpose.
 const FEW_OBJECTS: usize = 8;
 
 /// Reports objects that are not visible in the picture.
@@ -28,13 +29,13 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     let out: Vec<u32> = all.clone().filter(|&i| visibilities[i as usize] == Visibility::Outside).collect();
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match visibilities[i as usize] {
-            // Objects behind glass, or seen in a mirror, are visible.
+            // Objects behind glass and objects seen in a mirror count as visible.
             Visibility::Hidden(by) if !scene_probe.is_glass(by) && findings.is_empty() => Some((i, by)),
             _ => None,
         })
-        // A triangle behind another is the far side of a body.
+        // If a triangle is behind another one, it is the far side of a body.
         .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scene_probe, object)))
-        // `same-place` reports duplicates.
+        // The check `same-place` reports duplicates.
         .filter(|&(i, by)| {
             !super::objects::same(
                 &scene_probe.world().objects()[i as usize],
@@ -42,7 +43,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
             )
         })
         .collect();
-    // Warn if most of a small scene is missing, which is probably a mistake.
+    // A warning is given if most of a small scene is missing, which is probably a mistake.
     let bounded = scene_probe.world().objects().iter().filter(|object| object.bounds().is_some()).count();
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
@@ -55,7 +56,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
                 scene_probe.object(first)
             ),
         };
-        // An object outside the picture can be there for its shadow or its light, unless almost
+        // An object outside the picture may be there for its shadow or its light, unless almost
         // nothing else is visible.
         let own = |(_, hit): &(_, &crate::check::probes::ProbeHit)| {
             scene_probe.world().objects()[hit.object as usize].bounds().is_some()
@@ -83,7 +84,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
             (false, true) => "move it outside, or move or shrink the other object",
             (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
         };
-        // An object can be hidden by another on purpose.
+        // One object may hide another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = match separated_by_plane(scene_probe, by, first) {
             // An object behind an infinite plane is never visible.
@@ -144,7 +145,7 @@ fn contains_center(scene_probe: &SceneProbe, outer: u32, inner: u32) -> bool {
     middle.is_some_and(|middle| super::containment::containing_objects(scene_probe.world(), middle).contains(&outer))
 }
 
-/// Reports objects smaller than a pixel.
+/// Reports objects that are smaller than a pixel.
 pub(super) fn tiny(scene_probe: &SceneProbe) -> Vec<Finding> {
     let objects = scene_probe.world().objects();
     let small = |(index, object): (usize, &Object)| {
@@ -160,8 +161,8 @@ pub(super) fn tiny(scene_probe: &SceneProbe) -> Vec<Finding> {
         ))
     };
     let all: Vec<_> = objects.iter().enumerate().take(MAX_FINDINGS).filter_map(small).collect();
-    // A swarm of tiny objects is probably intended, and `too-small` reports a scene that is tiny as
-    // a whole.
+    // A swarm of tiny objects is probably intentional, and `too-small` reports a scene that is tiny
+    // as a whole.
     let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
     if objects.len() > FEW_OBJECTS || all.len() == bounded || scene_probe.hits().next().is_none() {
         return Vec::new();
@@ -181,7 +182,7 @@ pub(super) fn tiny(scene_probe: &SceneProbe) -> Vec<Finding> {
     all.into_iter().map(say).collect()
 }
 
-/// Reports height fields with the same height everywhere.
+/// Reports height fields that have the same height everywhere.
 pub(super) fn flat_field(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut all: Vec<&durer_scene::scene::Object> =
@@ -223,7 +224,7 @@ fn uniform_height_map(scene_probe: &SceneProbe, object: &durer_scene::scene::Obj
         Geometry::Primitive(_) | Geometry::Solid(_) => None,
     })?;
     let step = (mesh.len() / 2000).max(1);
-    // Ignore the sides and the underside.
+    // Ignore the sides and the underside of the landscape.
     let upper = |[a, b, c]: &[Vec3; 3]| {
         let n = (*b - *a).cross(*c - *a);
         n.y.abs() > 1e-3 * n.length() && n.y > 0.0
@@ -244,7 +245,8 @@ fn is_triangle(scene_probe: &SceneProbe, object: u32) -> bool {
     triangle(&scene_probe.world().objects()[object as usize]).is_some()
 }
 
-/// Reports objects far from everything visible, for example moved away by a transform.
+/// Reports objects that are far from everything visible, for example because a transform moved them
+/// away.
 fn far_away(scene_probe: &SceneProbe) -> Vec<Finding> {
     let both = || scene_probe.world().objects().iter().zip(scene_probe.visibilities()).enumerate();
     let hit =

@@ -1,4 +1,4 @@
-//! Checks of layered materials: black metals, glass that absorbs all light, and invisible surfaces.
+//! Checks layered materials: black metals, glass that absorbs all light, and invisible surfaces.
 
 use super::finding::{Finding, MAX_FINDINGS, number as number_word, vector};
 use super::scene_probe::SceneProbe;
@@ -8,11 +8,11 @@ use durer_scene::material::principled::Walls;
 use durer_scene::math::fp;
 use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 
-/// Reflectances and transmittances below this count as black.
+/// Reflectances and transmittances below this value count as black.
 const BLACK: f32 = 0.002;
 
-/// Returns the layered materials that objects use: index, description in the scene file, and
-/// parameters.
+/// Returns the layered materials that objects use, each with its index, its description in the
+/// scene file, and its parameters.
 pub(super) fn layers<'s>(
     scene_probe: &SceneProbe<'s>,
 ) -> Vec<(usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial)> {
@@ -25,7 +25,8 @@ pub(super) fn layers<'s>(
     own.take(MAX_FINDINGS).collect()
 }
 
-/// Returns the thickness of the thickest object with a material: the smallest side of its bounds.
+/// Returns the thickness of the thickest object that has a material. The thickness is the smallest
+/// side of the object's bounds.
 pub(super) fn thickness(scene_probe: &SceneProbe, material: usize) -> Option<f32> {
     let users = scene_probe.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = users.filter_map(|object| Some(object.bounds()?.size().min_element()));
@@ -67,7 +68,7 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
-/// Reports glass that transmits nothing.
+/// Reports glass that transmits no light.
 pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         let color = m.transmission_color.max_element();
@@ -82,7 +83,7 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
                 (diagnostic.effect("its colour absorbs all light: it is black").help(help), "transmissionColor")
             })?
         } else {
-            // Use the thickness as the length of a path through a round body.
+            // The thickness serves as the length of a path through a round body.
             let thick = thickness(scene_probe, number)?;
             let left = fp::exp(fp::ln(color.max(1e-6)) * 0.6 * thick / m.transmission_depth);
             (left < BLACK).then(|| {
@@ -109,7 +110,7 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
-/// Reports glass with an index of refraction of 1 or of an impossible value.
+/// Reports glass whose index of refraction is 1 or impossible.
 pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
@@ -121,7 +122,7 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
         let index = number_word(m.specular_ior);
         let message = format!("material {number} is glass with an index of refraction of {index}");
         let effect = match m.specular_ior {
-            // A volume of smoke also has an index of 1, so report only clear glass.
+            // A volume of smoke also has an index of 1, so only clear glass is reported.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
                 "light passes straight through without reflection, so its objects are invisible"
             }
@@ -136,7 +137,7 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
     layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
-/// Reports surfaces with zero opacity.
+/// Reports surfaces whose opacity is zero.
 pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         if m.opacity > 0.01 {

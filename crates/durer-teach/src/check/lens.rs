@@ -1,5 +1,5 @@
-//! Checks of lenses and stereo cameras (focus, aperture, shift, eye separation), of planes seen
-//! edge-on, and of scale and position relative to floating-point precision.
+//! Checks lenses and stereo cameras (focus, aperture, shift, eye separation), planes seen edge-on,
+//! and sizes and positions that are too small or too far away for floating-point precision.
 
 use super::finding::{Finding, number};
 use super::probes::{Probe, ProbeHit};
@@ -10,19 +10,20 @@ use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, Projection, ThinLensCamera};
 use durer_scene::math::{Aabb, Vec3, fp};
 
-/// Diameter of blur discs above which the picture is blurred everywhere, as a share of its size.
+/// Diameter of blur discs above which the picture is blurred everywhere, as a fraction of the
+/// picture's size.
 const MAX_BLUR: f32 = 0.08;
-/// Diameter of blur discs below which a point looks sharp, as a share of the picture's size.
+/// Diameter of blur discs below which a point looks sharp, as a fraction of the picture's size.
 const MAX_SHARP_BLUR: f32 = 0.02;
-/// Aperture that no lens exceeds, as a share of the focus distance.
+/// Aperture that no lens exceeds, as a fraction of the focus distance.
 const MAX_APERTURE: f32 = 0.4;
-/// Aperture that few lenses exceed, as a share of the distance to the objects.
+/// Aperture that few lenses exceed, as a fraction of the distance to the objects.
 const USUAL_MAX_APERTURE: f32 = 0.12;
-/// Eye separation above which the two images do not fuse, as a share of the distance.
+/// Eye separation above which the two images do not fuse, as a fraction of the distance.
 const MAX_SEPARATION: f32 = 0.5;
 
-/// Returns the diameter of the blur disc of each visible point, as a share of the picture's larger
-/// side, and the point's depth.
+/// Returns the diameter of the blur disc of each visible point, as a fraction of the picture's
+/// larger side, followed by the depth of the point.
 fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scene_probe.world().camera_frame().forward;
     let depth = |(probe, hit): (&Probe, &ProbeHit)| hit.t * probe.ray.dir.dot(forward);
@@ -59,7 +60,7 @@ pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
     ]
 }
 
-/// Reports an aperture larger than that of any lens, which blurs everything except one plane.
+/// Reports an aperture that is larger than that of any lens and blurs everything except one plane.
 pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
     let all = blurs(scene_probe, camera);
@@ -181,7 +182,7 @@ pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
                 .help("from there it is at most a line: tilt the camera's `direction` towards it"),
             false => {
-                // The normal on the side of the objects.
+                // This is the normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scene_probe.field_span(scene_probe.input.scene.camera_span, &["center"]);
@@ -201,7 +202,7 @@ pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Reports a scene so far from the origin that single precision cannot resolve its shapes.
+/// Reports a scene that is so far from the origin that single precision cannot resolve its shapes.
 pub(super) fn far_origin(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let sized = |b: Aabb| {
@@ -209,7 +210,7 @@ pub(super) fn far_origin(scene_probe: &SceneProbe) -> Vec<Finding> {
     };
     let all: Vec<(f32, f32)> = world.objects().iter().filter_map(|object| sized(object.bounds()?)).collect();
     let eye = world.camera().pose().center.abs().max_element();
-    // The camera and most objects must be far from the origin; a single distant object is a
+    // The camera and most objects must be far from the origin. A single distant object is a
     // different problem.
     let lost = |far: f32, size: f32| far * f32::EPSILON > size / 500.0;
     let many = all.iter().filter(|(far, size)| lost(*far, *size)).count();
@@ -239,7 +240,8 @@ pub(super) fn far_origin(scene_probe: &SceneProbe) -> Vec<Finding> {
     ]
 }
 
-/// Reports a scene smaller than the offset at which a dialect's program starts shadow rays.
+/// Reports a scene that is smaller than the offset at which the dialect's program starts shadow
+/// rays.
 pub(super) fn below_epsilon(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let Some(epsilon) = world.rules().epsilon else { return Vec::new() };

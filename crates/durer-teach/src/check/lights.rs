@@ -1,4 +1,4 @@
-//! Checks of lights that contribute nothing, or less than intended, to the visible points.
+//! Checks for lights that contribute nothing, or less than intended, at the visible points.
 
 use super::containment::containing_objects;
 use super::finding::{Finding, percent, vector};
@@ -14,7 +14,7 @@ use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 
-/// Returns the scene file's description of a light.
+/// Returns the description of a light in the scene file.
 pub(super) fn description<'s>(scene_probe: &SceneProbe<'s>, light: usize) -> Option<&'s Spanned<Light>> {
     scene_probe.input.scene.lights.as_ref()?.get(light)
 }
@@ -24,13 +24,13 @@ pub(super) fn span(scene_probe: &SceneProbe, light: usize) -> Option<Span> {
     Some(description(scene_probe, light)?.span)
 }
 
-/// Returns true if no light contributes to the visible points.
+/// Returns true if no light contributes at the visible points.
 pub(super) fn none_contributes(scene_probe: &SceneProbe) -> bool {
     let verdicts = scene_probe.verdicts();
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != LightVerdict::Works)
 }
 
-/// Returns a warning that a light contributes nothing, and the light's span.
+/// Returns a warning that a light contributes nothing, and the span of the light.
 pub(super) fn no_contribution(scene_probe: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = span(scene_probe, light)?;
     let effect = match (none_contributes(scene_probe), scene_probe.world().ambient().max_element() > VISIBLE) {
@@ -41,7 +41,7 @@ pub(super) fn no_contribution(scene_probe: &SceneProbe, light: usize, message: S
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
 
-/// Collects the findings that `find` returns for each light's index and verdict.
+/// Collects the findings that `find` returns for each light, given its index and verdict.
 pub(super) fn for_each_verdict(
     scene_probe: &SceneProbe,
     find: impl Fn(usize, LightVerdict) -> Option<Diagnostic>,
@@ -53,7 +53,7 @@ pub(super) fn for_each_verdict(
         .collect()
 }
 
-/// Reports lights inside an object that contribute only because shadows are off.
+/// Reports lights inside an object that contribute only because shadows are disabled.
 fn enclosed(scene_probe: &SceneProbe) -> Vec<Finding> {
     let shadows = scene_probe.input.job.settings.shadows;
     let lights = scene_probe.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_LIGHTS);
@@ -94,7 +94,7 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Returns true if light passes through the surface of an object.
+/// Returns true if light can pass through the surface of an object.
 fn transmits(scene_probe: &SceneProbe, object: u32) -> bool {
     let material = scene_probe.world().objects()[object as usize].material as usize;
     match scene_probe.world().materials().get(material) {
@@ -124,18 +124,18 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Share of the visible points that the lights must reach together. Below it, most of the picture
-/// is dark.
+/// Fraction of the visible points that all lights together must reach. Below this fraction, most of
+/// the picture is dark.
 const MOSTLY_DARK: f32 = 0.33;
-/// A light weaker than this share of the strongest one is a fill light.
+/// A light is a fill light if it is weaker than this fraction of the strongest light.
 const FILL_LIGHT_RATIO: f32 = 0.15;
 
-/// Share of lit points below which only a rim of the objects is lit.
+/// Fraction of lit points below which only a rim of the objects is lit.
 const RIM: f32 = 0.2;
-/// Share of lit points below which almost everything is dark.
+/// Fraction of lit points below which almost everything is dark.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
-/// Returns the lights that contribute, except those much weaker than the strongest.
+/// Returns the lights that contribute, except those that are much weaker than the strongest one.
 fn main_lights(scene_probe: &SceneProbe) -> Vec<usize> {
     let strength = |light: usize| {
         let arrives = scene_probe.hits().filter_map(|(_, hit)| Some(hit.contribution(light)?.unoccluded.max_element()));
@@ -148,7 +148,7 @@ fn main_lights(scene_probe: &SceneProbe) -> Vec<usize> {
     all.into_iter().filter(|(_, strength)| *strength >= FILL_LIGHT_RATIO * most).map(|(light, _)| light).collect()
 }
 
-/// Reports lights that reach few visible surfaces because most of them face away.
+/// Reports lights that reach few visible surfaces because most of the surfaces face away.
 fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scene_probe);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
@@ -156,7 +156,7 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     let bright = |lit: &LightContribution| {
         is_main(&lit) && lit.cosine > GRAZING && lit.contribution.abs().max_element() > VISIBLE
     };
-    // If backs are not shaded, a dark back is not the light's fault.
+    // If back faces are not shaded, the light is not to blame for a dark back face.
     let shaded = scene_probe.input.job.settings.shade_back;
     for (_, hit) in scene_probe.hits().filter(|(_, hit)| shaded || !hit.from_behind) {
         all += 1;
@@ -189,20 +189,22 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
                `position` its place",
         );
     diagnostic = scene_probe.at_value(diagnostic, span, &["direction", "position"]);
-    // If all lights are behind the surfaces, each `direction` probably points towards its source.
+    // If all lights are behind the surfaces, each `direction` probably points towards the light
+    // source.
     for &light in &working {
         let Some(light) = description(scene_probe, light) else { continue };
         if let (None, Some(direction)) = (light.value.position(), light.value.direction()) {
             diagnostic = diagnostic.fix_at(scene_probe.field_span(light.span, &["direction"]), vector(-direction));
         }
     }
-    // A crescent on a round object may be intended; a floor without any light is not.
+    // A crescent on a round object may be intentional, but a floor without any light is not.
     let flat = |object: u32| scene_probe.world().objects()[object as usize].bounds().is_none();
     let floor = scene_probe.hits().any(|(_, hit)| flat(hit.object));
     let lit_floor = scene_probe.hits().any(|(_, hit)| flat(hit.object) && hit.lights.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
         diagnostic.severity = Severity::Note;
-        // Offer no edit for a half-lit object. A thin lit rim is more likely due to a wrong sign.
+        // No edit is offered for a half-lit object. If only a thin rim is lit, a wrong sign is more
+        // likely.
         if reached as f32 > RIM * all as f32 {
             diagnostic.fix.clear();
         }
@@ -218,7 +220,7 @@ fn is_grazing(lit: &LightContribution) -> bool {
     lit.cosine.abs() <= 1e-3
 }
 
-/// Reports the first light that only grazes the visible surfaces.
+/// Reports the first light that meets the visible surfaces only at grazing angles.
 fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     let light = *lights.iter().find(|light| {
         let all = scene_probe.hits().filter_map(|(_, hit)| hit.contribution(**light));
@@ -274,7 +276,8 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     }
 }
 
-/// Reports lights that lie in a visible plane or run parallel to it, and so do not light it.
+/// Reports lights that lie in a visible plane or shine parallel to it, and therefore do not
+/// illuminate it.
 fn along_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
     let flat = |object: u32| scene_probe.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
@@ -327,7 +330,7 @@ pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
                 scene_probe.at_value(diagnostic, span, &["position"]).help(help)
             }
         };
-        // If other lights contribute, this one may be meant for the hidden side.
+        // If other lights contribute, this light may be meant for the hidden side.
         Some(if none_contributes(scene_probe) {
             diagnostic
         } else {
@@ -337,7 +340,7 @@ pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Reports lights whose colour the surfaces that they reach absorb completely.
+/// Reports lights whose colour is completely absorbed by the surfaces that they reach.
 pub(super) fn cancelled(scene_probe: &SceneProbe) -> Vec<Finding> {
     for_each_verdict(scene_probe, |light, verdict| {
         if verdict != LightVerdict::Cancelled || super::colors::all_black(scene_probe) {
@@ -370,7 +373,7 @@ pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
     pairs.map(say).collect()
 }
 
-/// Adds the edits that remove a light from the file and reduce the light count.
+/// Adds the edits that remove a light from the file and reduce the number of lights.
 fn with_removal(scene_probe: &SceneProbe, diagnostic: Diagnostic) -> Diagnostic {
     let Some(own) = diagnostic.span else { return diagnostic };
     let Some(bytes) = scene_probe.input.files.bytes(own.file) else { return diagnostic };

@@ -1,4 +1,4 @@
-//! Checks of the meshes of a scene: triangles, edges and normals.
+//! Checks the meshes of a scene: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
 use super::mesh_files::topology::Topology;
@@ -9,7 +9,7 @@ use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::dialect::Quirk;
 use durer_scene::math::Vec3;
 
-/// Fraction of zero-area triangles above which they are more than the poles of a surface of
+/// Fraction of zero-area triangles above which they cannot be only the poles of a surface of
 /// revolution.
 const MAX_DEGENERATE: f32 = 0.03;
 
@@ -75,7 +75,7 @@ pub(super) fn holes(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Reports flat objects of glass, which have no interior.
+/// Reports flat glass objects, which have no interior.
 pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     use super::shapes::{shape, triangle};
     use durer_scene::describe::DescribedKind as _;
@@ -117,8 +117,8 @@ pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     flat.iter().filter(open).take(3).map(say).collect()
 }
 
-/// Returns the mesh files that have faces with more than three vertices: path, number of such
-/// faces, number of all faces, and span of the first such face.
+/// Returns the mesh files that have faces with more than three vertices. For each file, returns its
+/// path, the number of such faces, the number of all faces, and the span of the first such face.
 pub(super) fn large_faces<'s>(scene_probe: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scene_probe.input.files.bytes(mesh.file)?;
@@ -139,7 +139,7 @@ pub(super) fn large_faces<'s>(scene_probe: &SceneProbe<'s>) -> Vec<(&'s str, usi
     scene_probe.meshes().iter().filter_map(one).collect()
 }
 
-/// Reports mesh files that a dialect's program misreads: it drops their last line, or assigns
+/// Reports mesh files that the dialect's program misreads. It drops their last line, or it assigns
 /// normals to other vertices than the faces do.
 pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
     let rules = scene_probe.world().rules();
@@ -177,7 +177,7 @@ pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Returns the first face with a normal index that differs from the vertex index.
+/// Returns the first face in which a normal index differs from the vertex index.
 fn different_normal_index(bytes: &[u8], file: u32) -> Option<Span> {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
@@ -243,7 +243,7 @@ pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports closed meshes in model files whose triangles are clockwise when seen from outside.
 fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
-    // File formats reverse the winding under a mirroring transform, so skip mirrored meshes.
+    // File formats reverse the winding under a mirroring transform, so mirrored meshes are skipped.
     let kept = |object: &CompiledObject| {
         object.to_world.as_ref().is_none_or(|to_world| {
             to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
@@ -264,7 +264,7 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
             .at(scene_probe.object_span(index))
             .effect("programs that cull back faces show its inside; as glass it refracts light the wrong way")
             .help("order the vertices of its faces counter-clockwise, as seen from outside");
-        // Modelling programs often leave small inverted pieces, which are hardly visible.
+        // Modelling programs often leave small inverted pieces that are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
     };
@@ -282,7 +282,7 @@ pub(super) fn is_inside_out_object(scene_probe: &SceneProbe, object: u32) -> boo
 }
 
 /// Reports normals in a mesh file that contradict its faces, are missing for some faces, or have
-/// zero length.
+/// length zero.
 pub(super) fn file_normals(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
     for mesh in scene_probe.meshes() {

@@ -1,9 +1,10 @@
-//! Diagnosis of scenes whose picture is black, white, empty or odd, with fixes.
+//! Diagnoses scenes whose picture is black, white, empty or unusual, and suggests fixes.
 //!
-//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and records their hits.
-//! The checks in the table [`CHECKS`] examine these probes, the meshes and the scene description.
-//! Every finding has a stable code, a place in the scene file, an effect on the picture, and a
-//! suggested change. If the change is mechanical, the finding also has an edit of the scene's text.
+//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and records what they
+//! hit. The checks in the table [`CHECKS`] examine these probes, the meshes and the scene
+//! description. Every finding has a stable code, a location in the scene file, an effect on the
+//! picture, and a suggested change. If the change is mechanical, the finding also has an edit of
+//! the scene's text.
 
 mod aim;
 mod area_lights;
@@ -56,11 +57,11 @@ pub use repair::{RepairedText, apply};
 pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
-/// Codes of findings that explain why nothing, or only a single object, is visible.
+/// Codes of findings that explain why nothing is visible, or only a single object.
 const EMPTY_PICTURE_CODES: [&str; 7] =
     ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
-/// Causes, each with the codes of findings that follow from it and are then suppressed.
+/// Causes, each with the codes of the findings that follow from it and are therefore suppressed.
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
@@ -114,8 +115,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("epsilon", &["tiny"]),
 ];
 
-/// Returns all findings about a compiled scene, causes first. They include the diagnostics of the
-/// reader and the compiler.
+/// Returns all findings about a compiled scene, with causes first. They include the diagnostics of
+/// the reader and the compiler.
 pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scene_probe = SceneProbe::new(input);
     let mut findings: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
@@ -128,8 +129,8 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     if findings.iter().any(|finding| finding.affects_whole_picture && !finding.only_describes) {
         findings.retain(|finding| !finding.only_describes);
     }
-    // If an attenuation keyword of another dialect was ignored, that is why the light does not
-    // fade.
+    // If an attenuation keyword of another dialect was ignored, this explains why the light does
+    // not fade.
     let fades = |finding: &Finding| {
         let word = finding.diagnostic.span.map(|span| scene_probe.text(span)).unwrap_or_default();
         finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
@@ -146,7 +147,7 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
             findings.retain(|finding| !consequences.contains(&finding.diagnostic.code));
         }
     }
-    // If nothing is visible, do not report individual invisible objects.
+    // If nothing is visible, individual invisible objects are not reported.
     if findings
         .iter()
         .any(|finding| EMPTY_PICTURE_CODES.contains(&finding.diagnostic.code) && finding.affects_whole_picture)
@@ -162,10 +163,10 @@ pub fn reader_findings(diagnostics: &Diagnostics) -> Vec<Finding> {
     ordered(diagnostics.iter().cloned().map(Finding::from).collect())
 }
 
-/// Sorts findings by level: errors, warnings about the whole picture, other warnings, notes. Within
-/// a level they follow the order of the table (causes before consequences), and each kind appears
-/// once before any kind repeats. If a kind has many findings, the last one shown gives the number
-/// of the others.
+/// Sorts findings by level: first errors, then warnings about the whole picture, other warnings,
+/// and notes. Within a level, findings follow the order of the table (causes before consequences),
+/// and each kind appears once before any kind is repeated. If there are many findings of one kind,
+/// the last one shown states how many others there are.
 fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,
@@ -174,7 +175,7 @@ fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
         Severity::Warning => 2,
         Severity::Note => 4,
     };
-    // Errors keep their order, because the first may cause the others.
+    // Errors keep their order because the first one may cause the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
     findings.sort_by_key(|finding| (level(finding), rank(finding)));
     let mut reported: Vec<(u8, &str)> = Vec::new();

@@ -1,13 +1,13 @@
-//! Checks for names that the scene file defines but does not use.
+//! Checks for names that the scene file defines but never uses.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::values;
 
-/// Reports `define` statements whose name is never used.
+/// Reports `define` statements whose names are never used.
 pub(super) fn unused_define(scene_probe: &SceneProbe) -> Vec<Finding> {
-    // Definitions in included files form a library and need not be used.
+    // Definitions in included files form a library and do not have to be used.
     let file = scene_probe.input.scene.camera_span.file;
     let Some(bytes) = scene_probe.input.files.bytes(file) else { return Vec::new() };
     let files = (0..).map_while(|i| scene_probe.input.files.bytes(i).map(|bytes| (i, bytes)));
@@ -21,7 +21,7 @@ pub(super) fn unused_define(scene_probe: &SceneProbe) -> Vec<Finding> {
             .at(**span)
             .effect("it is not in the picture: `define` only gives it a name")
             .help(format!("write `use {name}` in the `Group` where it should appear"));
-        // If no definition is used at all, that is probably a mistake.
+        // If none of the definitions is used, that is probably a mistake.
         if unused.len() == defined.len() {
             diagnostic.severity = Severity::Warning;
         }

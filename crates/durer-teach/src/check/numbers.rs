@@ -1,4 +1,4 @@
-//! Checks for samples that are NaN or infinite, and for the term that causes them.
+//! Checks for samples that are NaN or infinite, and for the term that causes this.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -8,7 +8,7 @@ use durer_render::integrator::trace::{TermKind, TermValue};
 use durer_render::render::explain::{explain, explain_ray};
 use durer_scene::sampler::SampleId;
 
-/// Reports the first sample that is not finite, and the chain of terms that leads to the cause.
+/// Reports the first sample that is not finite, and the chain of terms that leads to its cause.
 pub(super) fn not_finite(scene_probe: &SceneProbe) -> Vec<Finding> {
     let (world, job) = (scene_probe.world(), scene_probe.input.job);
     let (name, tree) = match scene_probe.input.rejected {

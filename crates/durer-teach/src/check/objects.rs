@@ -1,4 +1,4 @@
-//! Checks of objects: degenerate, squashed and duplicate ones.
+//! Checks for objects that are degenerate, squashed or duplicated.
 
 use super::faces::overlapping;
 use super::finding::{Finding, MAX_FINDINGS, number};
@@ -13,7 +13,7 @@ use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A box is squashed if its smallest side is less than this share of its other sides.
+/// A box is squashed if its smallest side is less than this fraction of its other sides.
 const SQUASHED_RATIO: f32 = 1e-4;
 
 /// Reports triangles of the scene file that have zero area.
@@ -34,7 +34,7 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
     scene_probe.world().objects().iter().filter(flat).map(say).collect()
 }
 
-/// Returns solids that a few hundred test rays all miss.
+/// Returns the solids that a few hundred test rays all miss.
 pub(super) fn empty_solids(scene_probe: &SceneProbe) -> Vec<u32> {
     let world = scene_probe.world();
     let empty = |&(i, object): &(usize, &Object)| {
@@ -58,7 +58,8 @@ pub(super) fn empty_solids(scene_probe: &SceneProbe) -> Vec<u32> {
     world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_FINDINGS).collect()
 }
 
-/// Returns objects without a surface: empty solids, and triangles and meshes with zero area.
+/// Returns the objects that have no surface. These are empty solids, and triangles and meshes with
+/// zero area.
 pub(super) fn without_surface(scene_probe: &SceneProbe) -> Vec<u32> {
     let mut nothing = empty_solids(scene_probe);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
@@ -86,7 +87,7 @@ pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
     empty_solids(scene_probe).into_iter().map(say).collect()
 }
 
-/// Reports objects that a transform makes flat, or nearly flat.
+/// Reports objects that a transform makes flat or nearly flat.
 pub(super) fn squashed(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
     for object in scene_probe.world().objects() {
@@ -118,7 +119,7 @@ pub(super) fn squashed(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Reports parts of solids that their own scale makes almost flat.
+/// Reports parts of solids that are almost flat because of their own scale.
 fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
     let least = |op: &MatrixOp| match op {
         MatrixOp::UniformScale(s) => s.abs(),
@@ -184,7 +185,8 @@ pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
             [x, y, z, u, v, w]
         });
         let there = places.entry(key).or_default();
-        // Compare with the first 16 only, which is cheap even if many objects are at one place.
+        // Compare with only the first 16, which is cheap even if many objects are at the same
+        // place.
         if findings.len() >= MAX_FINDINGS {
             break;
         }
@@ -196,7 +198,7 @@ pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Reports flat objects that lie in a plane, where rounding decides which of the two is visible.
+/// Reports flat objects that lie in a plane, where rounding determines which of the two is visible.
 fn in_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
     let objects = scene_probe.world().objects();
     let planes: Vec<(usize, &Plane)> = objects

@@ -1,5 +1,5 @@
-//! Checks of layered materials under path tracing: thin films, scattering bodies, dispersion, and
-//! paths too short for glass.
+//! Checks layered materials under path tracing: thin films, scattering bodies, dispersion, and
+//! paths that are too short for glass.
 
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::layers::{layers, thickness};
@@ -14,14 +14,15 @@ use durer_scene::spectrum::ColorMode;
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const MAX_MEAN_FREE_PATH: f32 = 30.0;
-/// Minimum deviation of the index of refraction from 1 that visibly bends light.
+/// Minimum deviation of the index of refraction from 1 for which light is visibly bent.
 const MIN_IOR_DIFFERENCE: f32 = 1e-3;
 
-/// A layered material that an object uses: index, description in the scene file, and parameters.
+/// A layered material that an object uses, with its index, its description in the scene file, and
+/// its parameters.
 type Used<'s> = (usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial);
 
-/// Reports thin films that are too thick to show colours, usually because a value in nanometres was
-/// written instead of micrometres.
+/// Reports thin films that are too thick to show colours, usually because a value was written in
+/// nanometres instead of micrometres.
 pub(super) fn thick_film(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(index, material, m): Used| {
         if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
@@ -70,7 +71,7 @@ pub(super) fn no_spectrum(scene_probe: &SceneProbe) -> Vec<Finding> {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
-        // Ignore dispersion that comes from a preset or a model, because it may not be meant to be
+        // Ignore dispersion that comes from a preset or a model because it may not be meant to be
         // visible.
         let value = scene_probe.field_span(material.span, &["transmissionDispersionScale"])?;
         let diagnostic =

@@ -1,4 +1,5 @@
-//! Checks of patterns that are not visible: only one part shows, or cells are smaller than a pixel.
+//! Checks for patterns that are not visible because only one part shows or because their cells are
+//! smaller than a pixel.
 
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::scene_probe::SceneProbe;
@@ -12,13 +13,13 @@ use durer_scene::scene::Material as ParsedMaterial;
 const STEPS: u32 = 24;
 /// Number of changes within a pixel above which a pattern is only noise.
 const MAX_CHANGES: usize = 3;
-/// A pattern is invisible if its cells are this many times wider than the scene.
+/// A pattern is invisible if its cells are wider than the scene by this factor.
 const MAX_CELL_SIZE: f32 = 3.0;
 /// Minimum number of visible points needed for a conclusion.
 const MIN_POINTS: usize = 20;
 
-/// Solid pattern or colour noise of a material, evaluated to find out if its pattern is visible in
-/// the picture. `Solid` carries the matrix to pattern space and
+/// Solid pattern or colour noise of a material, which is evaluated to find out whether it is
+/// visible in the picture. `Solid` contains the matrix to pattern space and
 /// [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
 enum PatternSampler<'w> {
     Solid(&'w PatternMaterial, &'w glam::DAffine3, bool),
@@ -49,13 +50,14 @@ impl PatternSampler<'_> {
     }
 }
 
-/// Reports patterns that show only one part, or only noise.
+/// Reports patterns of which only one part or only noise is visible.
 pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let mut findings = Vec::new();
     for (number, material) in scene_probe.input.scene.materials.iter().enumerate().take(MAX_FINDINGS) {
         let Some(look) = PatternSampler::of(world, number as u32) else { continue };
-        // Use direct hits only: a pattern nested in another shows only in places.
+        // Use direct hits only, because a pattern nested in another one is visible only in some
+        // places.
         let points: Vec<(Vec3, f32)> = scene_probe
             .hits()
             .filter(|(_, hit)| hit.material as usize == number)
@@ -107,7 +109,7 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Explains from the scene description why a pattern does not vary, if possible.
+/// Uses the scene description to explain why a pattern does not vary, if possible.
 fn why_uniform(
     scene_probe: &SceneProbe,
     look: &PatternSampler,
@@ -125,7 +127,7 @@ fn why_uniform(
     }
     let cell = to_pattern.inverse().matrix3;
     let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
-    // A scene of unbounded objects has no size to compare with.
+    // A scene of unbounded objects has no size that could be compared.
     let size = match scene_probe.world().bounds() {
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),
@@ -136,7 +138,7 @@ fn why_uniform(
     (cell > MAX_CELL_SIZE * size).then_some((message, help))
 }
 
-/// Reports textures that show a single colour because the image has only one colour, or because all
+/// Reports textures that show a single colour. Either the image has only one colour, or all
 /// vertices of a mesh have the same texture coordinates.
 pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();

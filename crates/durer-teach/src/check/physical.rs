@@ -26,10 +26,10 @@ const LOCAL_LIGHT_CHECKS: &[&str] = &[
     "seen-from-behind",
 ];
 
-/// Codes of those checks that can explain a black path-traced picture.
+/// Codes of the local lighting checks that can explain a black path-traced picture.
 const DARKNESS_CHECKS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
 
-/// Returns true if a check for local lighting does not apply to the scene.
+/// Returns true if a check is for local lighting and does not apply to the scene.
 pub(super) fn does_not_apply(scene_probe: &SceneProbe, code: &str) -> bool {
     let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark();
     scene_probe.is_physical() && LOCAL_LIGHT_CHECKS.contains(&code) && !says_why()
@@ -60,7 +60,7 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
     {
         return Vec::new();
     }
-    // If a material was meant to emit, report that material.
+    // If a material was meant to emit light, that material is reported.
     let emitter = scene_probe.input.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
@@ -98,7 +98,7 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
-/// Reports point lights inside glass: paths from outside cannot reach them.
+/// Reports point lights inside glass, which paths from outside cannot reach.
 pub(super) fn light_in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     if !matches!(scene_probe.input.job.method, IntegratorKind::Path(_)) {

@@ -3,18 +3,18 @@
 use durer_render::render::Statistics;
 use durer_scene::math::Color;
 
-/// Share of pixels clipped in all channels above which a picture is mostly white.
+/// Fraction of pixels clipped in all channels above which a picture is mostly white.
 const MAX_WHITE: f32 = 0.5;
-/// Share of rejected samples above which more than a few pixels are affected.
+/// Fraction of rejected samples above which more than a few pixels are affected.
 const MAX_REJECTED: f64 = 0.001;
 
-/// An obvious fault of a rendered picture, such as black everywhere, after which `durer render`
-/// suggests `durer check`.
+/// An obvious fault of a rendered picture, for example that it is black everywhere. After such a
+/// fault, `durer render` suggests running `durer check`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFault {
     /// The whole picture is black.
     Black,
-    /// The whole picture has one colour.
+    /// The whole picture has a single colour.
     OneColor,
     /// Most pixels are brighter than white.
     White,
@@ -23,7 +23,7 @@ pub enum PictureFault {
 }
 
 impl PictureFault {
-    /// Returns the fault as a predicate for the subject `the picture`.
+    /// Returns the fault as a predicate of the subject `the picture`.
     pub fn description(self) -> &'static str {
         match self {
             PictureFault::Black => "is completely black",
@@ -34,13 +34,13 @@ impl PictureFault {
     }
 }
 
-/// Detects an obvious fault of a rendered picture from its pixels, which are multiplied by the
+/// Detects an obvious fault of a rendered picture from its pixels. The pixels are multiplied by the
 /// exposure and can arrive in any number of pieces.
 #[derive(Clone, Debug)]
 pub struct PictureScan {
     exposure: f32,
     first: Option<Color>,
-    /// True if some pixel has a different colour from the first.
+    /// True if at least one pixel differs in colour from the first pixel.
     differs: bool,
     pixels: usize,
     /// Number of pixels that are brighter than white.
@@ -48,7 +48,8 @@ pub struct PictureScan {
 }
 
 impl PictureScan {
-    /// Creates a scan without pixels. `exposure` is the factor for their values.
+    /// Creates a scan that has no pixels yet. `exposure` is the factor by which pixel values are
+    /// multiplied.
     pub fn new(exposure: f32) -> Self {
         PictureScan { exposure, first: None, differs: false, pixels: 0, clipped: 0 }
     }
@@ -98,9 +99,9 @@ mod tests {
         assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(PictureFault::OneColor));
         assert_eq!(judged(&[1.5, 2.0, 0.1]), Some(PictureFault::White));
         assert_eq!(judged(&[0.0, 0.5, 1.0]), None);
-        // White itself is not clipped.
+        // White itself does not count as clipped.
         assert_eq!(judged(&[1.0, 1.0, 0.1]), None);
-        // Daylight in cd/m^2 is white unscaled and fine with an exposure.
+        // Daylight in cd/m^2 is white without scaling, but it is fine with an exposure.
         let day = [900.0, 2000.0, 7000.0];
         assert_eq!(oddity(&day, 1.0, &Statistics::default()), Some(PictureFault::OneColor));
         assert_eq!(oddity(&day, 1e-4, &Statistics::default()), None);

@@ -1,4 +1,5 @@
-//! A coarse grid of camera rays, traced with all terms of their light; input of the checks.
+//! A coarse grid of camera rays, traced with all terms of their light. It is the input of the
+//! checks.
 
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
@@ -15,7 +16,7 @@ use durer_scene::sampler::SampleId;
 use durer_scene::scene::Scene;
 use rayon::prelude::*;
 
-/// Number of rays along the larger side of the picture. It is reduced if there are many lights,
+/// Number of rays along the larger side of the picture. It is reduced if there are many lights
 /// because each hit evaluates every light.
 const RAYS: u32 = 48;
 const MIN_RAYS: u32 = 6;
@@ -37,13 +38,13 @@ pub struct CheckInput<'a> {
     pub files: &'a Files,
     /// Options of the render.
     pub job: &'a Job,
-    /// Factor by which colours are multiplied before display.
+    /// Factor by which colours are multiplied before they are displayed.
     pub exposure: f32,
-    /// Column, row and index of a sample known to be NaN or infinite, if there is one.
+    /// Column, row and index of a sample that is known to be NaN or infinite, if there is one.
     pub rejected: Option<(u32, u32, u32)>,
 }
 
-/// A camera ray that the checks trace, with its colour and first hit.
+/// A camera ray that the checks trace, with its colour and its first hit.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     /// Pixel that the ray passes through.
@@ -53,14 +54,14 @@ pub(super) struct Probe {
     pub hit: Option<ProbeHit>,
 }
 
-/// First surface hit by a probe's camera ray, and the light at that point.
+/// First surface that a probe's camera ray hits, and the light at that point.
 #[derive(Clone, Debug)]
 pub(super) struct ProbeHit {
     pub object: u32,
     pub material: u32,
     pub t: f32,
     pub from_behind: bool,
-    /// True if the ray hit a back that is not shaded.
+    /// True if the ray hit a back face that is not shaded.
     pub unshaded_back: bool,
     pub has_uv: bool,
     /// Contribution of the ambient light.
@@ -75,13 +76,13 @@ pub(super) struct LightContribution {
     /// N·L (`cosine`), and the light that would arrive without occlusion (`unoccluded`).
     pub cosine: f32,
     pub unoccluded: Color,
-    /// First object that occludes the light, if any.
+    /// First object that occludes the light, if there is one.
     pub blocker: Option<u32>,
-    /// Contribution to the pixel's colour.
+    /// Contribution of the light to the pixel's colour.
     pub contribution: Color,
 }
 
-/// A scene to be checked and the results of a coarse grid of camera rays.
+/// A scene to be checked, and the results of a coarse grid of camera rays.
 #[derive(Debug)]
 pub struct ProbeGrid<'a> {
     pub(super) input: CheckInput<'a>,
@@ -140,13 +141,14 @@ impl<'a> ProbeGrid<'a> {
         self.probes.iter().filter_map(|probe| Some((probe, probe.hit.as_ref()?)))
     }
 
-    /// Returns for each material the number of rays that hit it, directly or as part of a mix.
+    /// Returns, for each material, the number of rays that hit it, either directly or as part of a
+    /// mix.
     pub(super) fn count_rays(&self) -> Vec<usize> {
         let materials = self.world().materials();
         let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
         self.hits().for_each(|(_, hit)| direct[hit.material as usize] += 1);
         for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
-            // Count a part once even if it occurs several times in the mix.
+            // A part is counted once even if it occurs several times in the mix.
             let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
             while let Some(part) = parts.pop() {
                 if std::mem::replace(&mut known[part], true) {
@@ -174,7 +176,7 @@ impl<'a> ProbeGrid<'a> {
         world.materials().get(world.objects()[object as usize].material as usize).is_some_and(phong)
     }
 
-    /// Returns the naming of the scene's objects and materials in messages.
+    /// Returns the way in which messages name the scene's objects and materials.
     pub(super) fn names(&self) -> SceneNames<'a> {
         SceneNames { files: self.input.files, scene: self.input.scene, world: self.input.world }
     }
@@ -195,19 +197,19 @@ impl<'a> ProbeGrid<'a> {
         self.world().objects()[number as usize].span
     }
 
-    /// Returns the keyword of the grammar that the scene uses: the course's first grammar or the
-    /// node grammar.
+    /// Returns a keyword as it is written in the grammar that the scene uses, which is either the
+    /// course's first grammar or the node grammar.
     pub(super) fn keyword_of_grammar(&self, classic: &'static str, nodes: &'static str) -> &'static str {
         if self.input.dialect == Dialect::F23 { nodes } else { classic }
     }
 
-    /// Returns the text at a span.
+    /// Returns the text in a span.
     pub(super) fn text(&self, span: Span) -> String {
         let bytes = self.input.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
     }
 
-    /// Returns the span of a field's value in the block that starts at `block`; the first of
+    /// Returns the span of a field's value in the block that starts at `block`. The first of
     /// `fields` that is present counts.
     pub(super) fn field_span(&self, block: Span, fields: &[&str]) -> Option<Span> {
         let bytes = self.input.files.bytes(block.file)?;
@@ -245,7 +247,7 @@ impl Probe {
         for term in &tree.root.terms {
             match &term.kind {
                 TermKind::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
-                // A mix of materials has one term per light for each part.
+                // A mix of materials has one term per light for each of its parts.
                 TermKind::Light { light, to_light, shadow, .. } => {
                     let adds = tree.color(term.contribution());
                     match seen.lights.last_mut().filter(|lit| lit.light == *light) {

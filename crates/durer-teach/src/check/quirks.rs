@@ -1,4 +1,4 @@
-//! Checks of scenes that the program of a course year renders differently than intended because of
+//! Checks for scenes that the program of a course year renders differently than intended because of
 //! its quirks.
 
 use super::finding::{Finding, MAX_FINDINGS, number, percent, vector};
@@ -11,7 +11,7 @@ use durer_scene::material::PhongMaterial;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 
-/// Range of lengths of a camera's `up` whose effect is invisible.
+/// Range of lengths of a camera's `up` for which the effect is invisible.
 const UNIT_LENGTHS: std::ops::RangeInclusive<f32> = 0.9..=1.1;
 /// Cosine between `up` and `direction` above which the skew is visible.
 const SKEW: f32 = 0.6;
@@ -64,7 +64,7 @@ pub(super) fn pow_zero(scene_probe: &SceneProbe) -> Vec<Finding> {
     if findings.is_empty() { wide_highlight(scene_probe) } else { findings }
 }
 
-/// Returns the exponent of a material's highlight, and the field that sets it.
+/// Returns the exponent of a material's highlight and the field that sets it.
 fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     match (phong.exponent, phong.shininess) {
         (Some(exponent), _) => Some(("exponent", exponent)),
@@ -72,8 +72,8 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     }
 }
 
-/// Reports highlights so wide that they cover everything, for example with exponent 0 or a
-/// reciprocal exponent.
+/// Reports highlights that are so wide that they cover everything, for example because of an
+/// exponent of 0 or a reciprocal exponent.
 fn wide_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.world().rules().highlight == Highlight::None || scene_probe.is_physical() {
         return Vec::new();
@@ -97,7 +97,7 @@ const MAX_EXPONENT: f32 = 2e4;
 /// Exponent below which highlights are invisible.
 const MIN_EXPONENT: f32 = 0.7;
 
-/// Reports highlights smaller than a pixel.
+/// Reports highlights that are smaller than a pixel.
 pub(super) fn tiny_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.world().rules().highlight == Highlight::None || scene_probe.is_physical() {
         return Vec::new();
@@ -116,7 +116,7 @@ pub(super) fn tiny_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
     visible_materials(scene_probe).filter_map(say).take(MAX_FINDINGS).collect()
 }
 
-/// Reports a highlight colour without an exponent, which is 1 by default.
+/// Reports a highlight colour without an exponent. The default exponent is 1.
 pub(super) fn no_exponent(scene_probe: &SceneProbe) -> Vec<Finding> {
     match scene_probe.world().rules().highlight {
         Highlight::None => return no_highlight(scene_probe).into_iter().collect(),
@@ -139,8 +139,8 @@ pub(super) fn no_exponent(scene_probe: &SceneProbe) -> Vec<Finding> {
     visible_materials(scene_probe).filter(|(.., phong)| bare(phong)).map(say).take(MAX_FINDINGS).collect()
 }
 
-/// Notes a highlight colour without an exponent in a dialect without highlights, which uses it as
-/// the colour of a mirror.
+/// Reports, as a note, a highlight colour without an exponent in a dialect without highlights,
+/// which uses the colour for a mirror.
 fn no_highlight(scene_probe: &SceneProbe) -> Option<Finding> {
     let bare = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02
@@ -156,7 +156,7 @@ fn no_highlight(scene_probe: &SceneProbe) -> Option<Finding> {
     Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularColor"])))
 }
 
-/// Reports a camera's `up` that is not unit length in a dialect that does not normalise it.
+/// Reports a camera whose `up` does not have unit length, in a dialect that does not normalise it.
 pub(super) fn long_up(scene_probe: &SceneProbe) -> Vec<Finding> {
     let up = scene_probe.world().camera().pose().up;
     let length = up.length();
@@ -181,7 +181,8 @@ pub(super) fn long_up(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
-/// Reports an `up` far from perpendicular to `direction` in a dialect that does not correct it.
+/// Reports an `up` that is far from perpendicular to `direction`, in a dialect that does not
+/// correct it.
 fn skew_up(scene_probe: &SceneProbe) -> Option<Finding> {
     let pose = scene_probe.world().camera().pose();
     let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
@@ -203,7 +204,7 @@ fn skew_up(scene_probe: &SceneProbe) -> Option<Finding> {
     )
 }
 
-/// Reports a non-square picture in a dialect that stretches it.
+/// Reports a picture that is not square, in a dialect that stretches it.
 pub(super) fn stretched(scene_probe: &SceneProbe) -> Vec<Finding> {
     let job = scene_probe.input.job;
     let (width, height) = (job.width as f32, job.height as f32);
@@ -272,7 +273,7 @@ pub(super) fn same_parts(scene_probe: &SceneProbe) -> Vec<Finding> {
     materials.iter().enumerate().filter_map(say).take(MAX_FINDINGS).collect()
 }
 
-/// Reports ambient light so bright that other lights are hardly visible.
+/// Reports ambient light that is so bright that other lights are hardly visible.
 pub(super) fn full_ambient(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let ambient = world.ambient();
@@ -293,7 +294,8 @@ pub(super) fn full_ambient(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
-/// Reports planes whose normal is not unit length, in dialects where that moves them.
+/// Reports planes whose normal does not have unit length, in dialects in which this moves the
+/// plane.
 pub(super) fn plane_normal(scene_probe: &SceneProbe) -> Vec<Finding> {
     use durer_render::world::Object;
     let say = |object: &Object| {

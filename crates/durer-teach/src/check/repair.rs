@@ -1,19 +1,20 @@
-//! Applies the edits of findings to a scene's text.
+//! Applies the edits of findings to the text of a scene.
 
 use super::finding::Finding;
 use durer_diag::Edit;
 
-/// Text of a scene file after the edits of some findings, for `durer check --fix`.
+/// Text of a scene file after the edits of some findings have been applied, for `durer check
+/// --fix`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepairedText {
-    /// The new text.
+    /// Text after the edits.
     pub bytes: Vec<u8>,
     /// Indices of the findings whose edits were applied.
     pub fixed: Vec<usize>,
 }
 
 /// Applies the edits of findings to a file. Skips a finding if its edits overlap earlier ones or
-/// are in another file.
+/// belong to another file.
 pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut fixed = Vec::new();

@@ -1,4 +1,4 @@
-//! Lazily computed results that several checks use.
+//! Results that several checks use and that are computed on demand.
 
 use super::aim::{BeamMiss, beam_miss};
 use super::brightness::{brightest, exposed_colors};
@@ -13,8 +13,8 @@ use std::sync::OnceLock;
 /// Brightness below which a picture counts as black.
 const DARK: f32 = 0.02;
 
-/// A scene being checked: its probes, and results that several checks use and that are computed on
-/// first use.
+/// A scene being checked. It contains the probes, and results that several checks use and that are
+/// computed on first use.
 #[derive(Debug)]
 pub struct SceneProbe<'a> {
     grid: ProbeGrid<'a>,
@@ -58,14 +58,15 @@ impl<'a> SceneProbe<'a> {
         self.verdicts.get_or_init(|| verdicts(self, self.aims()))
     }
 
-    /// Returns for each light how its beam misses the visible points; `None` if it does not.
+    /// Returns, for each light, the way in which its beam misses the visible points, or `None` if
+    /// it does not miss them.
     pub(super) fn aims(&self) -> &[Option<BeamMiss>] {
         let lights = 0..self.world().lights().len();
         self.aims.get_or_init(|| lights.map(|light| beam_miss(self, light)).collect())
     }
 
-    /// Returns exposed colours of the picture: one for each probe, or with path tracing the mean of
-    /// a few samples for some of them.
+    /// Returns exposed colours of the picture. There is one for each probe or, with path tracing,
+    /// the mean of a few samples for some of the probes.
     pub(super) fn exposed_colors(&self) -> &[Color] {
         &self.lit().1
     }
@@ -74,13 +75,13 @@ impl<'a> SceneProbe<'a> {
         self.light.get_or_init(|| exposed_colors(self))
     }
 
-    /// Iterates over the probes whose exposed colours are known, with their colours.
+    /// Iterates over the probes whose exposed colours are known, together with their colours.
     pub(super) fn lit_probes(&self) -> impl Iterator<Item = (&Probe, Color)> {
         let (probes, colors) = self.lit();
         probes.iter().zip(colors).map(|(probe, color)| (&self.probes[*probe], *color))
     }
 
-    /// Returns true if a path-traced picture is black, or nearly so.
+    /// Returns true if a path-traced picture is black or nearly black.
     pub(super) fn is_dark(&self) -> bool {
         self.is_physical() && !self.exposed_colors().is_empty() && brightest(self.exposed_colors()) < DARK
     }
@@ -90,7 +91,8 @@ impl<'a> SceneProbe<'a> {
         self.meshes.get_or_init(|| files(self))
     }
 
-    /// Returns for each material the number of rays that hit it, directly or as part of a mix.
+    /// Returns, for each material, the number of rays that hit it, either directly or as part of a
+    /// mix.
     pub(super) fn material_rays(&self) -> &[usize] {
         self.material_rays.get_or_init(|| self.count_rays())
     }

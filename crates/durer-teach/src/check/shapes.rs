@@ -5,7 +5,7 @@ use durer_scene::light::{Light, PointLight, SpotLight};
 use durer_scene::math::Vec3;
 use durer_scene::shape::{Plane, Primitive, Shape as _};
 
-/// Returns the shape of an object that is a single primitive.
+/// Returns the shape of an object if it is a single primitive.
 pub(super) fn shape(object: &Object) -> Option<&Primitive> {
     match &object.geometry {
         Geometry::Primitive(shape) => Some(shape),
@@ -25,7 +25,7 @@ pub(super) fn triangle(object: &Object) -> Option<[Vec3; 3]> {
     <[Vec3; 3]>::try_from(&polygon[..]).ok()
 }
 
-/// Returns true if an object is a ball, whose center and radius give its position and size.
+/// Returns true if an object is a ball whose `center` and `radius` give its position and size.
 pub(super) fn is_ball(object: &Object) -> bool {
     match shape(object) {
         Some(Primitive::Sphere(_)) => true,
@@ -45,7 +45,7 @@ pub(super) fn is_ball(object: &Object) -> bool {
     }
 }
 
-/// Returns a light as a point light. Only point lights have attenuation in the scene file.
+/// Returns a light if it is a point light. Only point lights have attenuation in the scene file.
 pub(super) fn point(light: &Light) -> Option<&PointLight> {
     match light {
         Light::Point(point) => Some(point),
@@ -53,7 +53,7 @@ pub(super) fn point(light: &Light) -> Option<&PointLight> {
     }
 }
 
-/// Returns a light as a spotlight. Only spotlights have a cone in the scene file.
+/// Returns a light if it is a spotlight. Only spotlights have a cone in the scene file.
 pub(super) fn spot(light: &Light) -> Option<&SpotLight> {
     match light {
         Light::Spot(spot) => Some(spot),

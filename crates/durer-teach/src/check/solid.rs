@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{CsgOperation, ObjectKind, extent};
 
-/// Reports subtracted parts whose bounds do not overlap those of the first part.
+/// Reports subtracted parts whose bounds do not overlap the bounds of the first part.
 pub(super) fn part_without_effect(scene_probe: &SceneProbe) -> Vec<Finding> {
     let scene = scene_probe.input.scene;
     let mut findings = Vec::new();

@@ -1,4 +1,5 @@
-//! The table of checks, in the order of reporting: causes before their consequences.
+//! The table of checks, in the order in which findings are reported: causes come before their
+//! consequences.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -7,7 +8,7 @@ use super::{
     lens, lights, mesh, names, numbers, objects, optics, patterns, physical, quirks, solid, view,
 };
 
-/// A kind of finding with its stable code and the function that searches for it; a row of
+/// A kind of finding, with its stable code and the function that searches for it. Each is a row of
 /// [`CHECKS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Check {
@@ -15,7 +16,8 @@ pub struct Check {
     pub code: &'static str,
     /// Short description, as listed by `durer check --codes`.
     pub about: &'static str,
-    /// Runs the check. Returns nothing for codes that the reader or the compiler reports.
+    /// Runs the check. The function returns nothing for codes that the reader or the compiler
+    /// reports.
     pub(super) find: fn(&SceneProbe) -> Vec<Finding>,
 }
 
@@ -25,13 +27,13 @@ fn reported(_: &SceneProbe) -> Vec<Finding> {
 
 macro_rules! checks {
     ($($code:literal: $about:literal, $find:expr;)+) => {
-        /// Every kind of finding, in the order of reporting.
+        /// All kinds of findings, in the order in which they are reported.
         pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
     };
 }
 
 checks! {
-    // Reported by the reader and the compiler.
+    // The reader and the compiler report these.
     "syntax": "a word or number that cannot be parsed", reported;
     "unknown-word": "a word that is not allowed at its position", reported;
     "unclosed-block": "a missing brace", reported;
@@ -137,7 +139,7 @@ checks! {
     "too-dark": "hardly any light", exposure::too_dark;
     "all-missed": "no ray hits anything, although the camera looks at the scene", view::empty_view;
     "one-color": "a picture of one colour, from an unknown cause", exposure::one_color;
-    // Odd, but mostly harmless.
+    // These are unusual but mostly harmless.
     "dialect": "the dialect that was detected for the scene", reported;
     "radians": "a rotation that may be in radians", extent::radians;
     "repeated": "a section or field that appears twice", reported;

@@ -1,4 +1,4 @@
-//! Tests of parts of the checks that no scene covers on its own.
+//! Tests parts of the checks that no scene covers separately.
 
 use super::containment::containing_objects;
 use super::mesh_files::topology::Topology;
@@ -10,7 +10,7 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::{Cone, Cuboid, Cylinder, Ellipsoid, Primitive, Shape, Sphere, Torus};
 
-/// Builds a torus of `rows` by `rows` quads, each split into two triangles that face outwards.
+/// Builds a torus with `rows` by `rows` quads, each split into two triangles that face outwards.
 fn torus(rows: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let turn = |i: u32| fp::sin_cos_degrees(f64::from(i) * 360.0 / f64::from(rows));
     let corner = |i: u32, j: u32| {
@@ -32,11 +32,13 @@ fn sound_mesh_is_closed_and_faces_outwards() {
     let (positions, triangles) = torus(24);
     let topology = Topology::of(&positions, &triangles);
     assert!(topology.is_closed() && topology.reversed.is_empty() && topology.degenerate.is_empty());
-    // A torus with radii R and r encloses 2 pi^2 R r^2; its polygons enclose slightly less.
+    // A torus with radii R and r encloses a volume of 2 pi^2 R r^2. Its polygons enclose slightly
+    // less.
     let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 3.0;
     let volume = topology.volume / 6.0;
     assert!(volume < exact && volume > 0.95 * exact, "{volume} of {exact}");
-    // Separate vertices for each triangle make no difference, because equal positions are merged.
+    // It makes no difference if each triangle has its own vertices, because equal positions are
+    // merged.
     let apart: Vec<Vec3> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
     let own: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(Topology::of(&apart, &own).is_closed());
@@ -63,7 +65,7 @@ fn reversed_triangles_are_found() {
 #[test]
 fn open_and_shared_edges_are_counted() {
     let (positions, mut triangles) = torus(12);
-    // Each removed triangle leaves three open edges if no neighbour was removed.
+    // Each removed triangle leaves three open edges if none of its neighbours was removed.
     for taken in 1..4 {
         triangles.remove(taken * 40);
         let topology = Topology::of(&positions, &triangles);
@@ -96,7 +98,7 @@ fn points_are_inside_the_objects_around_them() {
         for _ in 0..300 {
             let local = 1.5 * random.point();
             let point = affine.transform_point3(local.as_dvec3()).as_vec3();
-            // Within rounding, either answer is correct.
+            // Within rounding error, either answer is correct.
             let near = |far: f64| shape.inside(local.as_dvec3() * (1.0 + far));
             if near(1e-4) != near(-1e-4) {
                 continue;
@@ -123,7 +125,7 @@ fn values_are_found_in_their_blocks() {
     };
     assert_eq!(value(0, "center"), Some("1 2.5 -3"));
     assert_eq!(value(0, "radius"), Some("4"));
-    // The last of several values counts; values of inner blocks do not.
+    // The last of several values counts. Values in inner blocks do not count.
     assert_eq!(value(1, "radius"), Some("6"));
     assert_eq!(value(1, "offset"), None);
     assert_eq!(place::block(text, keyword(0)).map(|s| (s.start, s.end)), Some((11, 46)));
@@ -141,7 +143,7 @@ fn edits_are_applied_unless_they_overlap() {
     let findings = [
         finding(&[(20, 22, "1")]),
         finding(&[(11, 12, "2"), (30, 31, "5 5 5")]),
-        // Overlaps the first edit, or is beyond the end.
+        // This edit overlaps the first edit or is beyond the end of the text.
         finding(&[(19, 21, "x")]),
         finding(&[(40, 41, "x")]),
         finding(&[]),
@@ -180,7 +182,7 @@ fn causes_come_before_consequences() {
         "unused-material",
     ];
     assert_eq!(codes, expected);
-    // Of many findings of a kind, only a few are reported.
+    // If there are many findings of one kind, only a few are reported.
     let many = ordered((0..9).map(|_| finding(warning, "same-place", false)).collect());
     assert!(many.len() < 6, "{many:?}");
     assert!(many.last().unwrap().diagnostic.message.ends_with("more of this kind"));

@@ -5,8 +5,9 @@ use durer_diag::Span;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind};
 
-/// If nothing is in the picture, returns the span of the first transform that moves its object out
-/// of the picture but would not if it were reversed or removed, and a sentence about it.
+/// If nothing is in the picture, returns a transform's span and a sentence about it. It is the
+/// first transform that moves its object out of the picture but would not do so if it were reversed
+/// or removed.
 pub(super) fn moved_out_of_view(scene_probe: &SceneProbe) -> Option<(Span, String)> {
     let objects = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects);
     objects.filter_map(|object| of(scene_probe, object)).next()

@@ -1,4 +1,5 @@
-//! Determines what each light contributes to the visible points, and why some contribute nothing.
+//! Determines what each light contributes at the visible points, and why some lights contribute
+//! nothing.
 
 use super::aim::BeamMiss;
 use super::containment::containing_objects;
@@ -11,20 +12,21 @@ use durer_scene::math::{Color, Ray, Vec3};
 
 /// Half a step of an eight-bit value. Smaller contributions are invisible.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
-/// Maximum number of lights that are examined. Further lights count as working.
+/// Maximum number of lights that are examined. Additional lights count as working.
 pub(super) const MAX_LIGHTS: usize = 500;
-/// Share of the visible points below which a light counts as contributing nothing.
+/// Fraction of the visible points below which a light counts as contributing nothing.
 const MIN_LIT_SHARE: f32 = 0.002;
-/// Share of shadowed points above which a light is blocked; only points that face the light count.
+/// Fraction of shadowed points above which a light is blocked. Only points that face the light
+/// count.
 const MAX_BLOCKED: f32 = 0.95;
-/// Minimum share of the points facing a light that a roof over all objects must shadow.
+/// Minimum fraction of the points facing a light that a roof over all objects must put in shadow.
 const MIN_ROOF_SHADOW: f32 = 0.6;
 /// Total light below which the lights are practically invisible.
 const MIN_TOTAL_LIGHT: f32 = 0.06;
-/// Cosine below which light grazes a surface.
+/// Cosine below which light hits a surface at a grazing angle.
 pub(super) const GRAZING: f32 = 0.08;
 
-/// Result of examining a light: whether it contributes to the visible points and, if not, why not.
+/// Result of examining a light: whether it contributes at the visible points and, if not, why not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum LightVerdict {
     /// The light contributes to the picture, or no visible point could receive its light.
@@ -35,15 +37,15 @@ pub(super) enum LightVerdict {
     Divides,
     /// The light is inside this object.
     Inside(u32),
-    /// This object blocks the light, at more points than any other.
+    /// This object blocks the light at more points than any other object.
     Blocked(u32),
     /// The visible surfaces face away from the light.
     Behind,
     /// The beam misses the visible surfaces.
     Missing,
-    /// The light is too weak: at most this much arrives.
+    /// The light is too weak, since at most this much of it arrives.
     Faint(f32),
-    /// The surfaces absorb the light's colour completely.
+    /// The surfaces completely absorb the light's colour.
     Cancelled,
 }
 
@@ -60,8 +62,8 @@ pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<BeamMiss>]) -> Vec<Light
     verdicts
 }
 
-/// Returns the light that arrives if there are at most three lights and all of them together are
-/// almost invisible.
+/// Returns the amount of light that arrives if there are at most three lights and all of them
+/// together are almost invisible.
 fn weak_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> Option<f32> {
     if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != LightVerdict::Works) {
         return None;
@@ -74,7 +76,7 @@ fn weak_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> Option<f32> {
     (arrives > 0.0 && arrives < MIN_TOTAL_LIGHT && adds < MIN_TOTAL_LIGHT).then_some(arrives)
 }
 
-/// Returns true if almost all surfaces that the lights reach absorb their colour.
+/// Returns true if almost all surfaces that the lights reach absorb the colour of the lights.
 fn cancelled_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> bool {
     let materials = grid.world().materials();
     if !verdicts.contains(&LightVerdict::Works)
@@ -98,7 +100,7 @@ fn cancelled_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> bool {
 
 fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightVerdict {
     let light = &grid.world().lights()[number];
-    // Clear glass shows what is behind it, not the light that reaches it.
+    // Clear glass shows what is behind it and not the light that reaches it.
     let clear = |hit: &ProbeHit| match &grid.world().materials()[hit.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Mix(..) => false,
@@ -118,7 +120,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightV
         return LightVerdict::Missing;
     }
     let visible = all.iter().filter(|lit| lit.contribution.abs().max_element() > VISIBLE).count();
-    // If there are only a few lights, each of them is probably meant to be visible.
+    // If there are only a few lights, each of them is probably meant to have a visible effect.
     let most = all.iter().map(|lit| lit.contribution.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.unoccluded.abs().max_element()).fold(0.0, f32::max);
     if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
@@ -138,7 +140,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightV
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.unoccluded.abs().max_element()).fold(0.0, f32::max);
-        // At grazing angles a surface is dark whatever its colour.
+        // At grazing angles, a surface is dark regardless of its colour.
         let colored = |hit: &ProbeHit| match &grid.world().materials()[hit.material as usize] {
             // Mirrors and other surfaces without diffuse reflection do not absorb a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
@@ -168,7 +170,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightV
     }
 }
 
-/// Returns true if almost all points that face a light are in shadow. A few lit pixels at the
+/// Returns true if almost all points that face a light are in its shadow. A few lit pixels at the
 /// horizon do not matter.
 fn nearly_blocked(all: &[&LightContribution]) -> bool {
     let facing: Vec<&&LightContribution> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
@@ -176,8 +178,8 @@ fn nearly_blocked(all: &[&LightContribution]) -> bool {
     blocked as f32 > MAX_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
 
-/// Returns true if one object shadows all other bounded objects that face a light, and most of the
-/// remaining points.
+/// Returns true if one object casts a shadow on all other bounded objects that face a light, and on
+/// most of the remaining points.
 fn is_under_roof(grid: &ProbeGrid, light: usize) -> bool {
     let objects = grid.world().objects();
     let facing = || {
@@ -193,8 +195,8 @@ fn is_under_roof(grid: &ProbeGrid, light: usize) -> bool {
     count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > MIN_ROOF_SHADOW * all as f32
 }
 
-/// Returns the object that blocks a light at the most points. Several objects can block the same
-/// point.
+/// Returns the object that blocks a light at the largest number of points. Several objects can
+/// block the same point.
 fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
     let (common, emitter) = (most_common(blocked)?, &grid.world().lights()[light]);
     let places = grid.hits().filter(|(_, seen)| seen.contribution(light).is_some_and(|lit| lit.blocker.is_some()));
@@ -210,12 +212,12 @@ fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> 
         all.extend(hit);
     }
     let count = |object: u32| all.iter().filter(|other| **other == object).count();
-    // Report the object that is hit first most often, unless another one blocks the light at more
-    // points.
+    // The object that is most often hit first is reported, unless another one blocks the light at
+    // more points.
     most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
 }
 
-/// Returns the plane that separates the camera from a light, if it is visible.
+/// Returns the plane that separates the camera from a light, if that plane is visible.
 fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     let point = point(light)?;
     let world = grid.world();
@@ -225,15 +227,15 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
-/// Returns true if an object around a light lets no light escape: it blocks the light, shadows are
-/// off, or no visible surface faces the light.
+/// Returns true if an object around a light lets no light escape. This is the case if it blocks the
+/// light, if shadows are disabled, or if no visible surface faces the light.
 fn encloses_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
     let shadows = grid.input.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
     blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
 }
 
-/// Returns the most frequent object.
+/// Returns the object that occurs most often.
 pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
     let mut sorted = objects.to_vec();
     sorted.sort_unstable();

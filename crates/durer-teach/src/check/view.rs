@@ -1,4 +1,4 @@
-//! Checks of the camera's position and direction.
+//! Checks the camera's position and direction.
 
 use super::containment::containing_objects;
 use super::finding::{Finding, number, vector};
@@ -22,7 +22,7 @@ pub(super) fn no_objects(scene_probe: &SceneProbe) -> Vec<Finding> {
     let empty =
         |root: &&Group| scene_probe.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
     let Some(root) = scene_probe.input.scene.root.as_ref().filter(empty) else { return Vec::new() };
-    // Models and JSON scenes have no `Group` keyword.
+    // Models and JSON scenes do not have a `Group` keyword.
     let file = scene_probe.input.scene.camera_span.file;
     let group = scene_probe.input.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
     let diagnostic = match group && root.objects.is_empty() {
@@ -45,11 +45,11 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
     for object in containing_objects(scene_probe.world(), pose.center) {
         let own = scene_probe.hits().filter(|(_, hit)| hit.object == object).count();
-        // A room contains light and other objects.
+        // A room contains lights and other objects.
         let dark = !physical
             && none_contributes(scene_probe)
             && scene_probe.verdicts().contains(&LightVerdict::Blocked(object));
-        // If backs are not shaded, walls seen from behind are not those of a room.
+        // If back faces are not shaded, walls seen from behind are not those of a room.
         let backs = scene_probe.hits().filter(|(_, hit)| hit.object == object && hit.from_behind).count();
         let walls = !physical && !scene_probe.input.job.settings.shade_back && backs * 50 > rays;
         let swallowed = super::extent::encloses_camera_wrongly(scene_probe, object) || is_alone(scene_probe, object);
@@ -86,7 +86,7 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Returns true if an object that contains the camera is the only bounded one, is seen only from
+/// Returns true if an object that contains the camera is the only bounded object, is seen only from
 /// behind, and fills much of the picture.
 fn is_alone(scene_probe: &SceneProbe, object: u32) -> bool {
     let world = scene_probe.world();
@@ -100,15 +100,16 @@ fn is_alone(scene_probe: &SceneProbe, object: u32) -> bool {
     ended == 1 && !scene_probe.is_physical() && !textured && all == backs && all * 4 > scene_probe.probes.len()
 }
 
-/// Returns a point outside a box, beyond the exit of a ray that starts inside it.
+/// Returns a point outside a box, on a ray that starts inside the box, beyond the point where the
+/// ray leaves it.
 fn point_outside(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     let direction = direction.normalize_or(Vec3::Z);
     let distance = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
     from + 1.5 * distance * direction
 }
 
-/// Returns the region that the camera should look at: the bounds of all bounded objects, or
-/// otherwise the nearest point of a plane.
+/// Returns the region that the camera should look at. This is the bounding box of all bounded
+/// objects or, if there are none, the nearest point of a plane.
 pub(super) fn target(scene_probe: &SceneProbe) -> Option<Aabb> {
     let (world, eye) = (scene_probe.world(), scene_probe.world().camera().pose().center);
     let bounds = world.bounds();
@@ -142,7 +143,7 @@ fn all_outside(scene_probe: &SceneProbe) -> bool {
     }
 }
 
-/// Reports a camera whose picture shows no bounded object because it points elsewhere.
+/// Reports a camera whose picture shows no bounded object because the camera points elsewhere.
 pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Some(bounds) = target(scene_probe).filter(|_| all_outside(scene_probe)) else { return Vec::new() };
     let (world, span) = (scene_probe.world(), scene_probe.input.scene.camera_span);
@@ -179,7 +180,8 @@ pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // A degenerate `up` can rotate the picture. Report the direction only if it is far off.
+    // A degenerate `up` vector can rotate the picture. The direction is reported only if it is far
+    // off.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
@@ -240,7 +242,7 @@ fn visible_objects(scene_probe: &SceneProbe) -> String {
     }
 }
 
-/// Describes how far the closest ray passes from an object's bounding sphere.
+/// Describes how far from an object's bounding sphere the closest ray passes.
 fn nearest(scene_probe: &SceneProbe) -> String {
     let world = scene_probe.world();
     let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
@@ -284,8 +286,8 @@ pub(super) fn empty_view(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).only_describing()]
 }
 
-/// Reports planes that cut most objects in the middle, for example a floor whose normal is along
-/// the wrong axis.
+/// Reports planes that cut most objects in the middle, for example a floor whose normal points
+/// along the wrong axis.
 pub(super) fn plane_through(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let boxes: Vec<[Vec3; 8]> =
@@ -305,7 +307,7 @@ pub(super) fn plane_through(scene_probe: &SceneProbe) -> Vec<Finding> {
         !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
     };
     let say = |number: u32| {
-        // Objects can be sunk into a floor on purpose.
+        // Objects may be sunk into a floor on purpose.
         let floor = world_plane(scene_probe, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
         let message = format!("the {} passes through the middle of most objects", scene_probe.object(number));
@@ -330,8 +332,8 @@ pub(super) fn upside_down(scene_probe: &SceneProbe) -> Vec<Finding> {
     let stand = !objects.is_empty() && objects.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
     let hit = scene_probe.hits().any(|(_, hit)| hit.object == number);
-    // A ceiling with objects hanging from it would look the same. Objects that touch the plane show
-    // that it is the ground.
+    // A ceiling with objects hanging from it would look the same. If objects touch the plane, it is
+    // the ground.
     let lowest = objects.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !hit || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Visibility of each object: in the picture, hidden by another, or outside.
+//! Visibility of each object: in the picture, hidden by another object, or outside the picture.
 
 use super::probes::ProbeGrid;
 use super::shapes::triangle;
@@ -6,12 +6,12 @@ use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
-/// Visibility of an object in the picture: seen, hidden by another object, or outside.
+/// Visibility of an object in the picture: seen, hidden by another object, or outside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Visibility {
-    /// Some of the object is in the picture.
+    /// Part of the object is in the picture.
     Visible,
-    /// The object projects into the picture, but this object hides it.
+    /// The object projects into the picture, but this other object hides it.
     Hidden(u32),
     /// The object is outside the picture.
     Outside,
@@ -19,12 +19,13 @@ pub(super) enum Visibility {
     Unknown,
 }
 
-/// Maximum number of objects that are tested one by one.
+/// Maximum number of objects that are tested individually.
 const MAX_OBJECTS: usize = 200;
-/// Number of triangles of a mesh that are tested, at their centres.
+/// Number of triangles of a mesh that are tested at their centres.
 const MAX_CORNERS: usize = 40;
 
-/// Returns the visibility of each object. If no probe hit an object, traces rays to points on it.
+/// Returns the visibility of each object. If no probe hit an object, this function traces rays to
+/// points on it.
 pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
     let objects = grid.world().objects();
     let mut visibilities = vec![Visibility::Unknown; objects.len()];
@@ -53,7 +54,7 @@ fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     sight
 }
 
-/// Returns the camera rays to a point; none if it projects outside the picture.
+/// Returns the camera rays to a point. The list is empty if the point projects outside the picture.
 pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
     let (world, mut points) = (grid.world(), Vec::new());
     world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| points.push(place));
@@ -67,8 +68,8 @@ pub(super) fn picture_corner(grid: &ProbeGrid) -> Vec2 {
     grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
 }
 
-/// Returns points to test for an object, in world space: the centre and corners of a triangle, the
-/// centres of a mesh's triangles, otherwise a grid through the bounds.
+/// Returns points to test for an object, in world space. These are the centre and corners of a
+/// triangle, the centres of a mesh's triangles, or a grid through the bounds of any other object.
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     if let Some(corners) = triangle(object) {
@@ -83,7 +84,7 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
         Geometry::Primitive(_) | Geometry::Solid(_) => {
             let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
             let (center, half) = (bounds.center(), 0.5 * bounds.size());
-            // Stay slightly inside the bounds, because round objects do not reach the corners.
+            // Stay slightly inside the bounds because round objects do not reach the corners.
             let steps = [0.0, -0.95, 0.95, -0.5, 0.5];
             let grid = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| Vec3::new(*x, *y, z))));
             grid.map(|at| center + at * half).collect()
@@ -91,7 +92,7 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
     }
 }
 
-/// Returns the centre of a triangle, and points near its corners.
+/// Returns the centre of a triangle and points near its corners.
 fn triangle_points([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
     let middle = (a + b + c) / 3.0;
     [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
@@ -102,8 +103,8 @@ pub(super) fn is_in_view(grid: &ProbeGrid, point: Vec3) -> bool {
     !rays_to(grid, point).is_empty()
 }
 
-/// Returns the larger side of a box's projection in pixels; `None` if some corner does not project
-/// to exactly one point.
+/// Returns the larger side of a box's projection in pixels, or `None` if some corner does not
+/// project to exactly one point.
 pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
     let (world, job) = (grid.world(), grid.input.job);
     let mut around: Option<(Vec2, Vec2)> = None;

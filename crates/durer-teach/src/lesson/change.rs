@@ -4,31 +4,32 @@ use super::stage::{LessonScene, percent};
 use durer_image::{Image, Layer, LayerKind, Transfer};
 use durer_scene::math::Vec3;
 
-/// Largest difference in a channel, in 255ths, that counts as rounding.
+/// Largest difference in a channel, in 255ths, that is attributed to rounding.
 const ROUNDING: i32 = 1;
-/// Minimum share of the pixels that must change for the change to count as visible.
+/// Minimum fraction of the pixels that must change for the change to count as visible.
 const MIN_SHARE: f64 = 0.001;
 
 /// Difference between the pictures before and after a lesson step, with the number of changed
 /// pixels.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Difference picture: grey where nothing changes, lighter where the picture gets lighter,
-    /// darker where it gets darker. Shows half the difference of the eight-bit values.
+    /// Difference picture. It is grey where nothing changes, lighter where the picture gets
+    /// lighter, and darker where the picture gets darker. It shows half the difference of the
+    /// eight-bit values.
     pub picture: Layer,
-    /// Number of all pixels.
+    /// Total number of pixels.
     pub pixels: usize,
     /// Number of pixels that change.
     pub changed: usize,
     /// Number of pixels that get lighter.
     pub lighter: usize,
-    /// Pixel that changes most, and its change in a channel in 255ths.
+    /// Pixel that changes most, and its change in one channel in 255ths.
     pub most: ((u32, u32), i32),
     light: bool,
 }
 
 impl Change {
-    /// Compares two layers after the transfer curve, which applies only to colour layers.
+    /// Compares two layers after applying the transfer curve, which affects only colour layers.
     pub(super) fn new(before: &Layer, after: &Layer, transfer: Transfer) -> Self {
         let light = after.kind == LayerKind::Color;
         let transfer = if light { transfer } else { Transfer::Linear };
@@ -58,7 +59,7 @@ impl Change {
         self.changed as f64 >= MIN_SHARE * self.pixels as f64 && self.changed > 0
     }
 
-    /// Describes the change in a sentence.
+    /// Describes the change in one sentence.
     pub(super) fn words(&self, stage: &LessonScene) -> String {
         let (share, ((x, y), by)) = (percent(self.changed, self.pixels), self.most);
         let [lighter, darker] = [self.lighter, self.changed - self.lighter].map(|n| percent(n, self.pixels));

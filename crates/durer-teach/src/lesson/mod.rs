@@ -1,9 +1,9 @@
 //! Explains the rendering of a scene in the order of the lecture, with pictures and equations for
 //! each step.
 //!
-//! The steps are the table [`TOPICS`]; [`Teacher`] renders their pictures in order. If a step
-//! changes nothing in the user's scene, it is shown in a small built-in scene. Path-tracing steps
-//! are shown only for path-traced scenes that have the effect.
+//! The table [`TOPICS`] contains the steps, and [`Teacher`] renders their pictures in order. If a
+//! step changes nothing in the user's scene, it is shown with a small built-in scene. Path-tracing
+//! steps are shown only for path-traced scenes in which the effect occurs.
 
 mod change;
 mod plan;
@@ -25,46 +25,47 @@ pub use topics::{Glass, PathSettings, Shot, ShotOptions, SourcePlace, TOPICS, To
 pub struct Picture {
     /// Short caption.
     pub caption: &'static str,
-    /// The picture in eight bits.
+    /// The picture with eight bits per channel.
     pub layer: Layer,
 }
 
-/// One step of the lesson as shown on a page: text, pictures, and the difference that the step
-/// makes.
+/// One step of the lesson as shown on a page, with its text, its pictures, and the difference that
+/// the step makes.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// Topic of the step.
     pub topic: &'static Topic,
     /// Title of the step.
     pub title: String,
-    /// True if the pictures show the built-in scene, because the user's scene lacks the effect.
+    /// True if the pictures show the built-in scene because the user's scene lacks the effect.
     pub uses_built_in_scene: bool,
     /// Reason why the user's scene lacks the effect.
     pub missing_because: &'static str,
     /// True if the step continues the previous step's topic.
     pub continues_topic: bool,
-    /// The picture before the step; `None` if there is nothing to compare with.
+    /// The picture before the step, or `None` if there is nothing to compare with.
     pub before: Option<Picture>,
     /// The picture after the step.
     pub after: Picture,
-    /// SVG drawing to show with the picture, if any.
+    /// SVG drawing to show with the picture, if there is one.
     pub plan: Option<String>,
     /// The difference between the two pictures.
     pub change: Option<Change>,
-    /// Effect of the step in this scene, in one or two sentences.
+    /// Effect of the step in this scene, described in one or two sentences.
     pub effect: String,
 }
 
 /// Renders the steps of the lesson for a scene, one topic at a time.
 #[derive(Debug)]
 pub struct Teacher {
-    /// The scene of the lesson, and the built-in scene.
+    /// The scene of the lesson and the built-in scene.
     stages: [LessonScene; 2],
     transfer: Transfer,
 }
 
 impl Teacher {
-    /// Creates a teacher for a scene. `transfer` is the curve after which pictures are compared.
+    /// Creates a teacher for a scene. `transfer` is the transfer curve that is applied before
+    /// pictures are compared.
     pub fn new(stage: LessonScene, transfer: Transfer) -> Self {
         let uses_built_in_scene = LessonScene::built_in(stage.size());
         Teacher { stages: [stage, uses_built_in_scene], transfer }
@@ -93,7 +94,7 @@ impl Teacher {
                 return Ok(with_reason(steps, missing_because));
             }
         }
-        // Not reached: a test checks that the built-in scene shows every topic.
+        // This line is not reached because a test checks that the built-in scene shows every topic.
         Ok(Vec::new())
     }
 }
@@ -103,7 +104,8 @@ fn with_reason(steps: Vec<Step>, missing_because: &'static str) -> Vec<Step> {
     steps.into_iter().enumerate().map(|(i, step)| Step { missing_because, continues_topic: i > 0, ..step }).collect()
 }
 
-/// Renders the steps of a topic in a scene; none if the first step makes no visible change.
+/// Renders the steps of a topic in a scene. There are none if the first step makes no visible
+/// change.
 fn steps(
     topic: &'static Topic,
     stage: &mut LessonScene,
@@ -131,7 +133,7 @@ fn steps(
             effect: words,
         };
         if topic.shots.len() == 1 {
-            // A single picture of another quantity is not compared.
+            // A single picture of a quantity other than colour is not compared.
             let words = stage.describe(shot, &picture);
             steps.extend(words.map(|words| step(None, None, words)));
         } else if let Some((before_shot, before)) = &last {
@@ -150,8 +152,8 @@ fn steps(
     Ok(steps)
 }
 
-/// Describes the noise of two Monte Carlo pictures in a sentence; empty if a picture has no noise
-/// estimate.
+/// Describes the noise of two Monte Carlo pictures in a sentence. The result is empty if a picture
+/// has no noise estimate.
 fn noise(before: &LessonPicture, after: &LessonPicture) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {

@@ -1,22 +1,22 @@
-//! Draws a plan view of the camera rays through the picture's middle row.
+//! Draws a plan view of the camera rays through the middle row of the picture.
 
 use super::stage::LessonScene;
 use durer_render::render::center_ray;
 use durer_scene::math::{Aabb, Vec2, Vec3};
 use std::fmt::Write;
 
-/// Number of rays drawn.
+/// Number of rays that are drawn.
 const RAYS: u32 = 21;
-/// Maximum number of boxes drawn; more would cover each other.
+/// Maximum number of boxes that are drawn. More boxes would cover each other.
 const MAX_BOXES: usize = 200;
 /// Width and height of the drawing.
 const SIZE: f32 = 400.0;
 
-/// Draws an SVG file with a box around each object and rays up to their hits.
+/// Draws an SVG file with a box around each object and with rays that end at their hits.
 pub(super) fn plan(stage: &LessonScene) -> String {
     let (world, (width, height)) = (&stage.world, stage.size());
     let frame = world.camera_frame();
-    // Camera space seen from above: right is to the right, forward is up.
+    // Camera space is seen from above, with right to the right and forward pointing up.
     let flat = |p: Vec3| Vec2::new((p - frame.eye).dot(frame.right), -(p - frame.eye).dot(frame.forward));
     let count = RAYS.min(width);
     let mut rays = Vec::new();
@@ -26,7 +26,8 @@ pub(super) fn plan(stage: &LessonScene) -> String {
         let hit = world.closest(&ray, &mut ()).map(|hit| hit.t);
         rays.push((ray, hit));
     }
-    // Limit rays to three times the median length, so that an infinite ground does not dominate.
+    // Limit rays to three times the median length so that an infinite ground does not dominate the
+    // drawing.
     let mut hits: Vec<f32> = rays.iter().filter_map(|ray| ray.1).collect();
     hits.sort_by(f32::total_cmp);
     let nothing = || (world.bounds().center() - frame.eye).length().max(1.0);
@@ -61,7 +62,7 @@ pub(super) fn plan(stage: &LessonScene) -> String {
             dot(&mut svg, to, 2.5, "#e8590c");
         }
     }
-    // Axes in the lower left corner.
+    // Draw the axes in the lower left corner.
     let corner = Vec2::new(18.0, SIZE - 18.0);
     for (to, name, at) in [
         (corner + Vec2::new(46.0, 0.0), "right", corner + Vec2::new(50.0, 4.0)),
@@ -79,7 +80,7 @@ pub(super) fn plan(stage: &LessonScene) -> String {
 }
 
 fn line(svg: &mut String, a: Vec2, b: Vec2, style: &str) {
-    // Skip zero-length and extremely distant lines. Writing to a string cannot fail.
+    // Skip lines that have zero length or are extremely far away. Writing to a string cannot fail.
     if a.distance(b) > 0.05 && a.abs().max_element().max(b.abs().max_element()) < 1e6 {
         let _ =
             writeln!(svg, "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>", a.x, a.y, b.x, b.y);

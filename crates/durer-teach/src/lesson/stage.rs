@@ -21,7 +21,7 @@ use durer_scene::scene::Scene;
 use durer_scene::source::MemorySource;
 use std::sync::Arc;
 
-/// Text of the built-in scene, in which every step is visible.
+/// Text of the built-in scene, in which every step has a visible effect.
 pub const OWN_SCENE: &str = include_str!("scene.txt");
 /// File name of the built-in scene in messages.
 pub const OWN_SCENE_NAME: &str = "our-scene.txt";
@@ -42,7 +42,8 @@ pub(super) struct LessonPicture {
     pub(super) noise: Option<f64>,
 }
 
-/// A scene of the lesson, compiled and ready to render with parts of its light switched off.
+/// A scene of the lesson that has been compiled and can be rendered with parts of its light
+/// switched off.
 #[derive(Debug)]
 pub struct LessonScene {
     scene: Scene,
@@ -54,12 +55,13 @@ pub struct LessonScene {
     ambient: Color,
     materials: Vec<Material>,
     rules: DialectRules,
-    /// Recent pictures, since a step often starts with the last picture of the previous one.
+    /// Recent pictures. They are kept because a step often starts with the last picture of the
+    /// previous one.
     cache: Vec<(Shot, LessonPicture)>,
 }
 
 impl LessonScene {
-    /// Creates a stage for a compiled scene. Ignores the job's crop and AOVs.
+    /// Creates a stage for a compiled scene. The crop and the AOVs of the job are ignored.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
         let (lights, ambient) = (world.lights().to_vec(), world.ambient());
         let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
@@ -67,7 +69,7 @@ impl LessonScene {
         LessonScene { scene, files, world, job, lights, ambient, materials, rules, cache: Vec::new() }
     }
 
-    /// Loads the built-in scene, to be rendered at a given size.
+    /// Loads the built-in scene in order to render it at a given size.
     pub(super) fn built_in((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
@@ -80,7 +82,8 @@ impl LessonScene {
         LessonScene::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
-    /// Returns the reason if the scene's dialect does not support the effect of a topic.
+    /// Returns the reason why the scene's dialect does not support the effect of a topic, if there
+    /// is one.
     pub(super) fn unsupported_by_dialect(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
@@ -137,7 +140,7 @@ impl LessonScene {
                 }
             }
         };
-        // Drop older pictures, which are not needed again.
+        // Drop older pictures, which will not be needed again.
         self.cache.drain(..self.cache.len().saturating_sub(MAX_CACHED - 1));
         self.cache.push((*shot, picture.clone()));
         Ok(picture)
@@ -152,7 +155,7 @@ impl LessonScene {
         let own = self.world.edit();
         (own.lights, own.ambient) = (lights, ambient);
         own.set_rules(self.rules.clone());
-        // The mistakes of the lesson change only the rules.
+        // The mistakes that the lesson shows change only the rules.
         if let Some(mistake) = options.mistake.and_then(mistake_by_name) {
             let mut variant = SceneVariant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.apply)(&mut variant, 0.0);
@@ -165,7 +168,7 @@ impl LessonScene {
         for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| options.highlights);
-            // Flat colour includes textures, even if the dialect does not apply ambient light to
+            // A flat colour includes textures, even if the dialect does not apply ambient light to
             // them.
             phong.ambient = phong.ambient.filter(|_| options.lights);
             if phong.fresnel && options.glass != Glass::Fresnel {
@@ -187,7 +190,7 @@ impl LessonScene {
         }
     }
 
-    /// Returns Whitted's method, or path tracing with the options of the job.
+    /// Returns either Whitted's method, or path tracing with the options of the job.
     fn method(&self, options: &ShotOptions) -> IntegratorKind {
         let Some(settings) = options.paths else { return IntegratorKind::WHITTED };
         let own = self.job.method.path_options().unwrap_or_default();
@@ -207,7 +210,7 @@ impl LessonScene {
     }
 
     /// Returns the options of a shot. Switches to path tracing if Whitted's method would show no
-    /// light: for direct light, both methods show the same step.
+    /// light. For direct light, both methods show the same step.
     fn with_method(&self, options: ShotOptions) -> ShotOptions {
         match self.needs_paths() && options.lights && options.paths.is_none() && options.bounces == 0 {
             true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..options },
@@ -215,8 +218,8 @@ impl LessonScene {
         }
     }
 
-    /// Returns the reason if a topic needs Whitted's method, which does not support the scene's
-    /// lights.
+    /// Returns the reason why a step is not shown if the topic needs Whitted's method and that
+    /// method does not support the scene's lights.
     pub(super) fn unsupported_by_method(&self, topic: &Topic) -> Option<&'static str> {
         let bounces = topic.shots.iter().any(|shot| shot.options.bounces > 0 && shot.options.paths.is_none());
         (self.needs_paths() && bounces).then_some(
@@ -237,7 +240,7 @@ impl LessonScene {
         }
     }
 
-    /// Returns the ray directions through the pixel centres as colours from 0 to 1; pixels without
+    /// Returns the ray directions through the pixel centres as colours from 0 to 1. Pixels without
     /// a ray are black.
     fn directions(&self) -> Result<LessonPicture, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
@@ -254,8 +257,8 @@ impl LessonScene {
         Ok(LessonPicture { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
-    /// Returns the distances `t` of the first hits of the rays through the pixel centres; rays that
-    /// miss are left out.
+    /// Returns the distances `t` of the first hits of the rays through the pixel centres, leaving
+    /// out rays that miss.
     fn distances(&self) -> Vec<f32> {
         let raster = self.raster();
         let ray = |place| center_ray(&self.world, &raster, place);
@@ -263,8 +266,8 @@ impl LessonScene {
         hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
     }
 
-    /// Describes in a sentence a picture that is not compared with another; `None` if it shows
-    /// nothing worth describing.
+    /// Describes, in a sentence, a picture that is not compared with another one. Returns `None` if
+    /// it shows nothing worth describing.
     pub(super) fn describe(&self, shot: &Shot, picture: &LessonPicture) -> Option<String> {
         let values = &picture.values.pixels;
         match shot.aov {
@@ -317,7 +320,7 @@ impl LessonScene {
         }
     }
 
-    /// Names the object at a pixel's centre by its keyword and its position in the scene file.
+    /// Names the object at the centre of a pixel by its keyword and its position in the scene file.
     pub(super) fn object_at(&self, pixel: (u32, u32)) -> String {
         let hit = center_ray(&self.world, &self.raster(), pixel).and_then(|ray| self.world.closest(&ray, &mut ()));
         let names = SceneNames { files: &self.files, scene: &self.scene, world: &self.world };
@@ -332,8 +335,8 @@ impl LessonScene {
     }
 }
 
-/// Returns a useful depth range for a scene with an infinite ground: it starts at the minimum and
-/// extends at most three times as far as the median.
+/// Returns a useful depth range for a scene with an infinite ground. The range starts at the
+/// minimum depth and extends at most to three times the median.
 fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     depths.sort_by(f32::total_cmp);
     let (least, most) = (*depths.first()?, *depths.last()?);
@@ -341,16 +344,16 @@ fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     (end > least).then_some((least, end))
 }
 
-/// Returns the mean standard error of the pixels relative to the mean luminance, from the variances
-/// of the pixel means. Values are clipped to white, because the edges of emitters would dominate
-/// otherwise. `None` for a black picture.
+/// Returns the mean standard error of the pixels relative to the mean luminance, computed from the
+/// variances of the pixel means. Values are clipped to white because the edges of emitters would
+/// dominate otherwise. The result is `None` for a black picture.
 fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
     let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
     let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();
     Some(errors / light).filter(|noise| noise.is_finite())
 }
 
-/// Formats a ratio as a percentage with one decimal.
+/// Formats a ratio as a percentage with one decimal place.
 pub(super) fn percent(part: usize, all: usize) -> String {
     format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
 }

@@ -33,7 +33,7 @@ fn built_in_scene_shows_every_topic() {
     let mut ours = LessonScene::built_in((64, 48));
     for topic in TOPICS.iter().filter(|topic| !topic.needs_path_tracing()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
-        // Mirrors show other mirrors, which show mirrors again.
+        // Mirrors show other mirrors, which in turn show mirrors.
         let least = if topic.name == "reflection" { 3 } else { 1 };
         assert!(steps.len() >= least, "{}: {}", topic.name, steps.len());
         assert!(steps.iter().all(|step| step.effect.ends_with('.')));
@@ -51,7 +51,7 @@ fn lesson_ends_with_the_final_picture_and_is_deterministic() {
     let picture = render(&whitted.world, &whitted.job, &Control::default()).unwrap();
     assert_eq!(steps.last().unwrap().after.layer.image, picture.layers[0].image);
     assert_eq!(bits(&steps), bits(&lesson(whitted)));
-    // A step can start with the last picture of an earlier one.
+    // A step may start with the last picture of an earlier step.
     let specular = steps.iter().find(|step| step.topic.name == "specular").unwrap();
     let diffuse = steps.iter().find(|step| step.topic.name == "diffuse").unwrap();
     assert_eq!(specular.before.as_ref().unwrap().layer, diffuse.after.layer);
@@ -68,7 +68,7 @@ fn built_in_scene_replaces_a_scene_without_the_effect() {
     assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
 }
 
-/// Renders the path-tracing steps of a scene at a small size.
+/// Renders the path-tracing steps of a scene as small pictures.
 fn of_paths(scene: &str) -> Vec<Step> {
     let mut stage = stage(scene, 40);
     stage.job.method =
@@ -107,8 +107,8 @@ fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.render(shot, &Control::default()).unwrap().noise.unwrap()).collect();
-    // The error of light sampling alone comes from rare bright samples, most of which are missing
-    // in so few samples.
+    // With light sampling alone, the error comes from rare bright samples. With so few samples,
+    // most of them are missing.
     assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
@@ -118,11 +118,12 @@ fn acne_makes_lit_surfaces_darker() {
     let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
     let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
     let change = steps[0].change.as_ref().unwrap();
-    // Removing acne only makes pixels lighter.
+    // Removing acne can only make pixels lighter.
     assert!(change.changed > 100 && change.lighter == change.changed, "{change:?}");
 }
 
-/// Compares a sphere's normal transformed by the matrix itself with the inverse transpose.
+/// Compares a sphere's normal transformed by the matrix itself with the normal transformed by the
+/// inverse transpose.
 #[test]
 fn moved_normals_are_transformed_by_the_matrix_itself() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
@@ -132,7 +133,8 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
         rules.quirks = if quirk { Quirk::MovedNormals.bit() } else { 0 };
         let folder = Path::new(".");
         let (world, _) = durer_render::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
-        // The point (0.6, 0.4, z) of the sphere in object space is (1.2, 0.2, z) in world space.
+        // The point (0.6, 0.4, z) of the sphere in object space becomes (1.2, 0.2, z) in world
+        // space.
         let ray = Ray::new(Vec3::new(1.2, 0.2, 9.0), Vec3::NEG_Z);
         let world = world.unwrap();
         let surface = world.intersect(&ray, &mut ()).unwrap().surface;
@@ -144,7 +146,7 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
 }
 
 /// Places a ball of radius 1 in the centre of the picture, 5 units from the camera. Rays that miss
-/// it have no distance.
+/// the ball have no distance.
 #[test]
 fn distances_are_those_of_the_rays_that_hit() {
     let mut stage = stage("whitted.txt", 24);
@@ -161,12 +163,12 @@ fn distances_are_those_of_the_rays_that_hit() {
     stage.world = world.unwrap();
     (stage.job.width, stage.job.height) = (100, 100);
     let words = words(&mut stage);
-    // The ball covers a circle of half the angle asin(1/5): 24.7 % of the picture.
+    // The ball covers a circle whose half angle is asin(1/5), which is 24.7 % of the picture.
     assert!(words.starts_with("24.") && words.contains("from 4.00 to 4.8"), "{words}");
 }
 
-/// The Cornell box is lit by an area light. Its direct light is path traced, and mirrors are shown
-/// in the built-in scene.
+/// An area light illuminates the Cornell box. The direct light of the Cornell box is path traced,
+/// and mirrors are shown in the built-in scene.
 #[test]
 fn scene_without_whitted_lights_uses_path_tracing() {
     let mut stage = stage("cornell-box.txt", 32);

@@ -1,28 +1,28 @@
-//! The table of the lesson's topics: text, equations, pictures and references to the source code.
-//! Topics of path tracing come last.
+//! The table of the lesson's topics, with their text, equations, pictures and references to the
+//! source code. The topics of path tracing come last.
 
 use durer_render::integrator::DirectSampling;
 use durer_scene::spectrum::ColorMode;
 
-/// Options of one picture of the lesson: which parts of the light it shows, and which mistake it
-/// includes.
+/// Options of one picture of the lesson. They determine which parts of the light it shows and which
+/// mistake it includes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShotOptions {
-    /// True if lights illuminate the scene; otherwise each surface shows its flat colour.
+    /// True if lights illuminate the scene. Otherwise, each surface shows its flat colour.
     pub lights: bool,
     /// True if surfaces have highlights.
     pub highlights: bool,
     /// True if lights cast shadows.
     pub shadows: bool,
-    /// Maximum depth of reflected and transmitted rays; the job's maximum also applies.
+    /// Maximum depth of reflected and transmitted rays. The job's maximum also applies.
     pub bounces: u32,
     /// How glass is rendered.
     pub glass: Glass,
-    /// Name of a mistake from [`crate::mistakes::MISTAKES`] to include.
+    /// Name of the mistake to include, from [`crate::mistakes::MISTAKES`].
     pub mistake: Option<&'static str>,
-    /// True if a pixel has several samples.
+    /// True if each pixel has several samples.
     pub sampled: bool,
-    /// Options of path tracing; `None` for Whitted's method.
+    /// Options of path tracing, or `None` for Whitted's method.
     pub paths: Option<PathSettings>,
 }
 
@@ -31,9 +31,9 @@ pub struct ShotOptions {
 pub struct PathSettings {
     /// Sampling strategy for direct light.
     pub direct: DirectSampling,
-    /// True if caustics are rendered with photons.
+    /// True if photons are used to render caustics.
     pub photons: bool,
-    /// RGB or spectral light.
+    /// Colour representation of the light, either RGB or spectral.
     pub color: ColorMode,
     /// True if glass has dispersion.
     pub disperses: bool,
@@ -45,30 +45,30 @@ impl PathSettings {
         PathSettings { direct: DirectSampling::Both, photons: false, color: ColorMode::Rgb, disperses: true };
 }
 
-/// How a picture of the lesson renders glass.
+/// The way in which a picture of the lesson renders glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Glass {
-    /// As an opaque surface.
+    /// Glass is rendered as an opaque surface.
     None,
-    /// Transmits all light, without Fresnel reflection.
+    /// Glass transmits all light, without Fresnel reflection.
     Transmits,
-    /// With Fresnel reflection, as in the scene.
+    /// Glass has Fresnel reflection, as in the scene.
     Fresnel,
 }
 
-/// One picture of a topic, to be rendered by a [`LessonScene`](super::stage::LessonScene).
+/// One picture of a topic, which a [`LessonScene`](super::stage::LessonScene) renders.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     /// Short caption.
     pub caption: &'static str,
-    /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]; `None` for colour.
+    /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]. It is `None` for colour.
     pub aov: Option<&'static str>,
     /// Parts of the light to show.
     pub options: ShotOptions,
 }
 
-/// A reference from the lesson to the source code: a file, relative to the root of the repository,
-/// and text to find in it.
+/// A reference from the lesson to the source code. It consists of a file, relative to the root of
+/// the repository, and text to find in that file.
 #[derive(Clone, Copy, Debug)]
 pub struct SourcePlace {
     /// Path of the file.
@@ -77,7 +77,7 @@ pub struct SourcePlace {
     pub symbol: &'static str,
 }
 
-/// A topic of the lesson, such as shadows, with one or more pictures; a row of [`TOPICS`].
+/// A topic of the lesson, such as shadows, with one or more pictures. Each is a row of [`TOPICS`].
 #[derive(Debug)]
 pub struct Topic {
     /// Short name, also used in file names.
@@ -86,19 +86,20 @@ pub struct Topic {
     pub title: &'static str,
     /// Explanation for a student who has read the previous topics.
     pub words: &'static str,
-    /// Equations, one per line.
+    /// Equations, with one per line.
     pub equations: &'static [&'static str],
     /// Places in the source code that implement the equations.
     pub places: &'static [SourcePlace],
-    /// Pictures: a single one, or a chain in which each is compared with the previous one.
+    /// Pictures of the topic: a single one, or a chain in which each picture is compared with the
+    /// previous one.
     pub shots: &'static [Shot],
     /// Reason why a scene may lack the effect.
     pub lacking: &'static str,
 }
 
 impl Topic {
-    /// Returns true for topics of path tracing, which are shown only for scenes rendered by path
-    /// tracing.
+    /// Returns true for topics of path tracing, which are shown only if the scene is rendered with
+    /// path tracing.
     pub fn needs_path_tracing(&self) -> bool {
         self.shots.iter().any(|shot| shot.options.paths.is_some())
     }
@@ -150,7 +151,7 @@ const fn straight(direct: DirectSampling) -> ShotOptions {
 const PHOTONS: PathSettings = PathSettings { photons: true, ..BOTH };
 const SPECTRAL: PathSettings = PathSettings { color: ColorMode::Spectral, ..PHOTONS };
 
-/// Topics in the order of the lecture.
+/// Topics in the order in which the lecture covers them.
 pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "rays",

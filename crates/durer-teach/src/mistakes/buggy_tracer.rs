@@ -1,7 +1,8 @@
-//! A student's ray tracer: a second implementation of Whitted's algorithm that can make mistakes.
+//! A student's ray tracer, which is a second implementation of Whitted's algorithm that can make
+//! mistakes.
 //!
-//! It is separate from [`Whitted`], so that the renderer contains no code for mistakes. A test
-//! checks that without mistakes both return bit-identical colours.
+//! It is separate from [`Whitted`] so that the renderer contains no code for mistakes. A test
+//! checks that both return bit-identical colours if there are no mistakes.
 
 mod hits;
 
@@ -55,7 +56,7 @@ impl<'w> BuggyTracer<'w> {
 
     fn trace(&self, ray: &Ray64, mut path: RayState) -> Color {
         let mut rest = *ray;
-        // With some mistakes a ray hits the same surface again, so limit the loop.
+        // With some mistakes, a ray hits the same surface again and again, so the loop is limited.
         for _ in 0..64 {
             let behind = self.bugs.behind.is_some_and(|rays| rays == BehindOrigin::All || path.first);
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
@@ -83,7 +84,7 @@ impl<'w> BuggyTracer<'w> {
         }
     }
 
-    /// Applies mistakes in positions and normals to an interaction.
+    /// Applies the mistakes in positions and normals to an interaction.
     fn met(&self, mut at: SurfaceInteraction, t: f32) -> SurfaceInteraction {
         let (bugs, object) = (self.bugs, &self.world.objects()[at.hit.object as usize]);
         let SurfaceInteraction { ray, hit, surface, .. } = &mut at;
@@ -93,8 +94,8 @@ impl<'w> BuggyTracer<'w> {
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.unnormalized_mesh_normals)
             && let Some(mixed) = tree.mesh.interpolated_normal(hit.part, hit.uv)
         {
-            // Only the length of the interpolated normal is needed: rotations and uniform scales
-            // preserve it.
+            // Only the length of the interpolated normal is needed, and rotations and uniform
+            // scales preserve it.
             surface.n_shade *= mixed.length();
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.normal_permutation > 0) {
@@ -293,13 +294,14 @@ impl<'w> BuggyTracer<'w> {
                     PointLightDirection::MinusPosition => li.to_light = -point.position.normalize_or(li.to_light),
                 }
             }
-            // The course's programs have neither kind of light.
+            // The course's programs have neither of these kinds of light.
             Light::Spot(_) | Light::Photometric(_) => {}
         }
         li
     }
 
-    /// Returns the light vector used in products; it is unit length unless a mistake changes that.
+    /// Returns the light vector that is used in products. It has unit length unless a mistake
+    /// changes that.
     fn light_vector(&self, light: &Light, li: &LightLiSample) -> Vec3 {
         match light {
             Light::Directional(sun) if self.bugs.lights.long => li.to_light * sun.direction.length(),
@@ -308,7 +310,7 @@ impl<'w> BuggyTracer<'w> {
         }
     }
 
-    /// Returns the diffuse term and the highlight due to one light.
+    /// Returns the diffuse term and the highlight that one light causes.
     fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, li: &LightLiSample) -> Color {
         let bugs = self.bugs.highlights;
         let to_light = self.light_vector(light, li);
@@ -331,7 +333,7 @@ impl<'w> BuggyTracer<'w> {
         let plain = self.bugs.plain_diffuse && diffuse != Color::ZERO;
         let mut color = factor * if plain { Color::ONE } else { diffuse };
         if self.bugs.diffuse_lightless {
-            // Cancels the multiplication by `seen.color` at the end.
+            // This cancels the multiplication by `seen.color` at the end.
             color /= li.color.max(Color::splat(1e-6));
         }
         if let Some((specular, exponent, model)) = phong.highlight {
@@ -364,7 +366,8 @@ impl<'w> BuggyTracer<'w> {
         color * li.color
     }
 
-    /// Returns the fraction of a light that reaches a surface, per channel; 0 in full shadow.
+    /// Returns, for each channel, the fraction of a light that reaches a surface. It is 0 in full
+    /// shadow.
     fn visible(&self, surface: &SurfacePoint, light: usize, li: &LightLiSample, first: bool) -> Color {
         let bugs = self.bugs.shadows;
         let unshadowed = self.bugs.bounces.unshadowed && !first;
@@ -425,7 +428,7 @@ impl<'w> BuggyTracer<'w> {
         Color::ZERO
     }
 
-    /// Returns 1 if all objects along the ray are transparent, otherwise 0.
+    /// Returns 1 if all objects along the ray are transparent, and 0 otherwise.
     fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<Epsilon>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
@@ -439,7 +442,7 @@ impl<'w> BuggyTracer<'w> {
         Color::ZERO
     }
 
-    /// Returns reflected and transmitted light.
+    /// Returns the reflected and transmitted light.
     fn secondary(
         &self,
         at: &SurfaceInteraction,
@@ -556,7 +559,7 @@ impl<'w> BuggyTracer<'w> {
     }
 }
 
-/// Returns the direction of a reflected ray, computed correctly or with a mistake.
+/// Returns the direction of a reflected ray, computed either correctly or with a mistake.
 fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
     match how {
         Mirror::Correct => reflect(d, n),

@@ -1,126 +1,128 @@
-//! The mistakes that a student's tracer can make, as options of
+//! The mistakes that a student's tracer can make, given as options of
 //! [`BuggyTracer`](super::BuggyTracer).
 
 use durer_scene::math::{Color, Vec2};
 
-/// Which hit along a ray a student's tracer uses; only `Nearest` is correct.
+/// Hit along a ray that a student's tracer uses. Only `Nearest` is correct.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HitChoice {
     /// The nearest hit, which is correct.
     #[default]
     Nearest,
-    /// The nearest hit of the object whose nearest hit is farthest away.
+    /// The nearest hit of one object, which is the object whose nearest hit is farthest away.
     FarthestObject,
     /// The last intersection with any surface.
     Last,
-    /// The hit of the object that is last in the file.
+    /// The hit of the object that comes last in the file.
     LastInFile,
-    /// The hit of the object that is first in the file.
+    /// The hit of the object that comes first in the file.
     FirstInFile,
     /// The nearest hit, but with the far side of spheres.
     FarSpheres,
-    /// `FarthestObject`, but with the farthest triangle of meshes.
+    /// The hit of `FarthestObject`, but with the farthest triangle of meshes.
     FarthestTriangle,
-    /// `LastInFile`, but with the last triangle of meshes.
+    /// The hit of `LastInFile`, but with the last triangle of meshes.
     LastTriangle,
     /// The nearest hit, except that spheres are not hit from inside.
     NearRoots,
-    /// The nearest front-facing hit; with `true`, only triangles are culled.
+    /// The nearest front-facing hit. With `true`, only triangles are culled.
     Fronts(bool),
-    /// The hit of the nearest object; for a mesh, the first triangle in the file that is hit.
+    /// The hit of the nearest object. For a mesh, this is the first triangle in the file that is
+    /// hit.
     FirstOfMesh,
-    /// The hit of the nearest object; for a mesh, the last triangle in the file that is hit.
+    /// The hit of the nearest object. For a mesh, this is the last triangle in the file that is
+    /// hit.
     LastOfMesh,
     /// The nearest hit, with wrong roots for spheres.
     Roots(Roots),
-    /// The nearest hit, with ray directions transformed to object space like points.
+    /// The nearest hit, with ray directions transformed to object space as if they were points.
     MovedDirection,
 }
 
 /// Wrong formulas for the roots in ray-sphere intersection, with a = d·d and b = d·(o - center).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Roots {
-    /// (-b ± √(b² - 4 a c)) / 2a.
+    /// The roots are (-b ± √(b² - 4 a c)) / 2a.
     FourHalf,
-    /// (-b ± √(b² - 4 a c)) / a.
+    /// The roots are (-b ± √(b² - 4 a c)) / a.
     FourWhole,
-    /// (-b ± √(b² - a c)) / 2a.
+    /// The roots are (-b ± √(b² - a c)) / 2a.
     TwiceA,
 }
 
 /// Formula for the normal of a sphere at a point p.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SphereNormal {
-    /// norm(p - center), which is correct.
+    /// The normal is norm(p - center), which is correct.
     #[default]
     Correct,
-    /// norm(p).
+    /// The normal is norm(p).
     Position,
-    /// p - center.
+    /// The normal is p - center.
     Long,
 }
 
-/// How a student's tracer transforms normals from object to world space.
+/// Method by which a student's tracer transforms normals from object to world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// Inverse transpose, normalised, which is correct.
+    /// The matrix is the inverse transpose, and the result is normalised, which is correct.
     #[default]
     Correct,
-    /// No transform.
+    /// The normals are not transformed.
     Local,
-    /// Inverse transpose, not normalised.
+    /// The matrix is the inverse transpose, but the result is not normalised.
     Long,
-    /// Inverse, not transposed.
+    /// The matrix is the inverse, but it is not transposed.
     ByInverse,
 }
 
-/// How a student's tracer adds the ambient light.
+/// Method by which a student's tracer adds the ambient light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ambient {
-    /// Multiplied by the diffuse colour and added once, which is correct.
+    /// It is multiplied by the diffuse colour and added once, which is correct.
     #[default]
     Correct,
-    /// Added once for each light.
+    /// It is added once for each light.
     EachLight,
-    /// Not multiplied by the diffuse colour.
+    /// It is not multiplied by the diffuse colour.
     Bare,
 }
 
 /// Cosine factor of the diffuse term in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cosine {
-    /// max(0, N·L), which is correct.
+    /// The factor is max(0, N·L), which is correct.
     #[default]
     Clamped,
-    /// |N·L|.
+    /// The factor is |N·L|.
     TwoSided,
-    /// N·L, without clamping.
+    /// The factor is N·L without clamping.
     Signed,
-    /// 1, independent of the direction.
+    /// The factor is 1, independent of the direction.
     One,
-    /// No diffuse term.
+    /// There is no diffuse term.
     None,
-    /// max(0, N·L)².
+    /// The factor is max(0, N·L)².
     Squared,
-    /// (N·L + 1) / 2.
+    /// The factor is (N·L + 1) / 2.
     Half,
-    /// 1 where N·L > 0.
+    /// The factor is 1 where N·L > 0.
     Step,
-    /// max(0, N·L) / π.
+    /// The factor is max(0, N·L) / π.
     OverPi,
-    /// max(0, N·V).
+    /// The factor is max(0, N·V).
     View,
 }
 
-/// How a student's tracer computes the half vector of Blinn's highlights.
+/// Formula by which a student's tracer computes the half vector of Blinn's highlights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HalfVector {
-    /// norm(L + V), which is correct.
+    /// The half vector is norm(L + V), which is correct.
     #[default]
     Unit,
-    /// L + V.
+    /// The half vector is L + V.
     Sum,
-    /// (L + V) / 2.
+    /// The half vector is (L + V) / 2.
     Mean,
 }
 
@@ -133,10 +135,11 @@ pub enum BehindOrigin {
     Camera,
 }
 
-/// How a student's tracer adds up the contributions of the lights.
+/// Method by which a student's tracer adds up the contributions of the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSum {
-    /// Sum, clamped only when the pixel is written, which is correct.
+    /// The contributions are summed, and the sum is clamped only when the pixel is written, which
+    /// is correct.
     #[default]
     Correct,
     /// The sum is clamped to 1 after each light.
@@ -149,126 +152,128 @@ pub enum LightSum {
     LastOnly,
     /// Each light that is not in shadow replaces the previous ones.
     LastUnoccluded,
-    /// Maximum of the lights, for each channel.
+    /// The result is the maximum of the lights, for each channel.
     Greatest,
-    /// Maximum of the lights and the ambient light, for each channel.
+    /// The result is the maximum of the lights and the ambient light, for each channel.
     GreatestOfAll,
 }
 
-/// How a student's tracer attenuates a point light at distance d.
+/// Formula by which a student's tracer attenuates a point light at distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attenuation {
-    /// Divided by the scene's polynomial, which is correct.
+    /// The light is divided by the scene's polynomial, which is correct.
     #[default]
     Correct,
-    /// Multiplied by the scene's polynomial.
+    /// The light is multiplied by the scene's polynomial.
     Multiplied,
-    /// Divided by d.
+    /// The light is divided by d.
     Linear,
-    /// Divided by d².
+    /// The light is divided by d².
     Square,
-    /// Divided by the root of the scene's polynomial.
+    /// The light is divided by the square root of the scene's polynomial.
     Root,
-    /// Divided by the scene's polynomial of d².
+    /// The light is divided by the scene's polynomial of d².
     SquaredTwice,
 }
 
-/// How a student's tracer computes the direction L to a point light, and sometimes the distance d.
+/// Formula by which a student's tracer computes the direction L to a point light, and sometimes the
+/// distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointLightDirection {
-    /// L = norm(position - p), which is correct.
+    /// The formula is L = norm(position - p), which is correct.
     #[default]
     Correct,
-    /// L = norm(p - position).
+    /// The formula is L = norm(p - position).
     Negated,
-    /// L = norm(position).
+    /// The formula is L = norm(position).
     Position,
-    /// L = norm(-position).
+    /// The formula is L = norm(-position).
     MinusPosition,
-    /// L = norm(position), and d = |position|.
+    /// The formulas are L = norm(position) and d = |position|.
     PositionAlone,
-    /// L = norm(position - eye); with `true`, also d = |position - eye|.
+    /// The formula is L = norm(position - eye). With `true`, d = |position - eye| is also used.
     FromEye(bool),
 }
 
-/// How a student's tracer computes the direction of a reflected ray.
+/// Formula by which a student's tracer computes the direction of a reflected ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mirror {
-    /// d - 2 (d·N) N, which is correct.
+    /// The direction is d - 2 (d·N) N, which is correct.
     #[default]
     Correct,
-    /// The correct direction, negated.
+    /// The direction is the negated correct direction.
     Negated,
-    /// d - (d·N) N: along the surface.
+    /// The direction is d - (d·N) N, which is along the surface.
     Along,
-    /// d + 2 (d·N) N.
+    /// The direction is d + 2 (d·N) N.
     Plus,
     /// N.
     Normal,
 }
 
-/// How a student's tracer computes the direction of a transmitted ray.
+/// Formula by which a student's tracer computes the direction of a transmitted ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glass {
-    /// Snell's law, which is correct.
+    /// The direction follows Snell's law, which is correct.
     #[default]
     Correct,
     /// The ratio of the indices is inverted.
     Inverted,
-    /// The ratio for entering is also used when the ray leaves.
+    /// The ratio for entering the object is also used when the ray leaves it.
     IndicesNotSwapped,
     /// The ray is not refracted.
     Straight,
-    /// The outward normal is also used when the ray leaves.
+    /// The outward normal is also used when the ray leaves the object.
     Outward,
-    /// The root is added instead of subtracted.
+    /// The square root is added instead of subtracted.
     RootAdded,
     /// The indices are exchanged, also in Fresnel's law.
     Exchanged,
     /// The component along the normal has the wrong sign.
     SignChanged,
-    /// The root is left out.
+    /// The square root is left out.
     NoRoot,
-    /// η replaces η² below the root.
+    /// In the square root, η takes the place of η².
     Unsquared,
 }
 
 /// Fresnel term of glass in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fresnel {
-    /// Schlick's approximation, which is correct.
+    /// The term is Schlick's approximation, which is correct.
     #[default]
     Correct,
-    /// R0 at every angle.
+    /// The term is R0 at every angle.
     Constant,
-    /// None: the reflected and the transmitted ray both have weight 1.
+    /// There is no Fresnel term, so the reflected and the transmitted ray both have weight 1.
     None,
     /// This fraction is reflected at every angle.
     Share(f32),
-    /// Reflected and transmitted fractions are exchanged.
+    /// The reflected and the transmitted fraction are exchanged.
     Exchanged,
-    /// Schlick's approximation with the angle of the incoming ray even when it leaves the glass.
+    /// The term is Schlick's approximation with the angle of the incoming ray, even when the ray
+    /// leaves the glass.
     Incoming,
-    /// Schlick's approximation with R0 not squared.
+    /// The term is Schlick's approximation with R0 not squared.
     Unsquared,
-    /// Schlick's approximation with this power instead of 5.
+    /// The term is Schlick's approximation with this power instead of 5.
     Power(f32),
 }
 
 /// Mistakes in the direction and attenuation of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightBugs {
-    /// L of directional lights is the direction from the file, not its negative.
+    /// The L of directional lights is the direction from the file instead of its negative.
     pub negated: bool,
-    /// L of all lights has the wrong sign, also for shadow rays.
+    /// The L of all lights has the wrong sign, also for shadow rays.
     pub all_negated: bool,
-    /// L of directional lights is not normalised.
+    /// The L of directional lights is not normalised.
     pub long: bool,
-    /// L of point lights is not normalised.
+    /// The L of point lights is not normalised.
     pub long_points: bool,
-    /// Attenuation of point lights.
+    /// Attenuation formula of point lights.
     pub attenuation: Attenuation,
-    /// Direction to point lights.
+    /// Formula for the direction to point lights.
     pub points: PointLightDirection,
 }
 
@@ -279,9 +284,9 @@ pub struct HighlightBugs {
     pub times_cosine: bool,
     /// The highlight is multiplied by the diffuse colour.
     pub times_diffuse: bool,
-    /// The highlight has the light's colour: it is not multiplied by the specular colour.
+    /// The highlight has the light's colour because it is not multiplied by the specular colour.
     pub bare: bool,
-    /// Half vector of Blinn's model.
+    /// Half vector in Blinn's model.
     pub half: HalfVector,
     /// The view direction has the wrong sign.
     pub eye_negated: bool,
@@ -289,7 +294,7 @@ pub struct HighlightBugs {
     pub lightless: bool,
     /// The highlight is multiplied by this factor.
     pub factor: Option<f32>,
-    /// The base of the power is an absolute value.
+    /// The base of the power is replaced by its absolute value.
     pub two_sided: bool,
     /// Blinn's highlight is also added where N·L <= 0.
     pub everywhere: bool,
@@ -300,39 +305,39 @@ pub struct HighlightBugs {
 /// Direction of the shadow rays in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowDirection {
-    /// Towards the light, which is correct.
+    /// The rays point towards the light, which is correct.
     #[default]
     Light,
-    /// Away from the light.
+    /// The rays point away from the light.
     Away,
-    /// Along the surface normal.
+    /// The rays point along the surface normal.
     Normal,
 }
 
 /// End of the shadow rays in a student's tracer, for a point light at distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowRayEnd {
-    /// At d, which is correct.
+    /// The rays end at d, which is correct.
     #[default]
     Correct,
     /// At 1.
     One,
-    /// At d²: `t` ends at d although the ray direction has length d.
+    /// The rays end at d² because `t` ends at d although the ray direction has length d.
     Squared,
 }
 
-/// Mistakes in shadow rays, and in the light that remains in shadow.
+/// Mistakes in shadow rays and in the light that remains in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowBugs {
     /// Shadow rays do not end at the light.
     pub endless: bool,
     /// Ambient light is missing in shadow.
     pub ambient_too: bool,
-    /// Start distance of shadow rays, if different.
+    /// Distance at which shadow rays start, if it is different.
     pub epsilon: Option<f32>,
     /// Fraction of a light that remains in its shadow.
     pub remaining_light: f32,
-    /// If one light is blocked, all later lights are missing too.
+    /// If one light is blocked, all later lights are also missing.
     pub later_too: bool,
     /// If any light is blocked, the ambient light is missing.
     pub ambient_of_any: bool,
@@ -342,7 +347,7 @@ pub struct ShadowBugs {
     pub no_glass: bool,
     /// Direction of shadow rays.
     pub direction: ShadowDirection,
-    /// A light contributes where it is blocked, instead of where it is visible.
+    /// A light contributes where it is blocked instead of where it is visible.
     pub inverted: bool,
     /// Shadow rays to directional lights end at distance 1.
     pub short: bool,
@@ -354,8 +359,8 @@ pub struct ShadowBugs {
     pub from_eye: bool,
     /// End of the shadow rays to point lights.
     pub ray_end: ShadowRayEnd,
-    /// If one light is blocked, all direct light is missing; with `true`, also reflected and
-    /// transmitted light.
+    /// If one light is blocked, all direct light is missing. With `true`, reflected and transmitted
+    /// light is also missing.
     pub black: Option<bool>,
 }
 
@@ -366,9 +371,9 @@ pub struct SecondaryBugs {
     pub mirror_in_full: bool,
     /// Transmitted light is not multiplied by the glass's colour.
     pub glass_in_full: bool,
-    /// Reflected rays return nothing; the Fresnel term still applies.
+    /// Reflected rays return nothing, but the Fresnel term still applies.
     pub no_mirror: bool,
-    /// Transmitted rays return nothing; the Fresnel term still applies.
+    /// Transmitted rays return nothing, but the Fresnel term still applies.
     pub no_glass: bool,
     /// Direction of reflected rays.
     pub mirror: Mirror,
@@ -376,7 +381,7 @@ pub struct SecondaryBugs {
     pub glass: Glass,
     /// Fresnel term of glass.
     pub fresnel: Fresnel,
-    /// Local light is scaled by 1 minus the mirror's colour.
+    /// The local light is multiplied by 1 minus the mirror's colour.
     pub mixed: bool,
     /// Reflected light is multiplied by the diffuse colour.
     pub times_diffuse: bool,
@@ -384,13 +389,13 @@ pub struct SecondaryBugs {
     pub instead: bool,
     /// Secondary rays are traced once for each light.
     pub each_light: bool,
-    /// Secondary rays that miss return black.
+    /// Secondary rays that miss everything return black.
     pub black_sky: bool,
-    /// Directions of secondary rays are normalised.
+    /// The directions of secondary rays are normalised.
     pub unit: bool,
     /// Only the first hit of a camera ray has shadows.
     pub unshadowed: bool,
-    /// Start distance of secondary rays, if different.
+    /// Distance at which secondary rays start, if it is different.
     pub epsilon: Option<f32>,
 }
 
@@ -398,15 +403,15 @@ pub struct SecondaryBugs {
 /// correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bugs {
-    /// The hit that is used along a ray.
+    /// The hit along a ray that the tracer uses.
     pub hit_choice: HitChoice,
-    /// Rays for which hits behind the origin count, if any.
+    /// Rays for which hits behind the origin count, if there are any.
     pub behind: Option<BehindOrigin>,
     /// The colour that each ray returns is clamped to 1.
     pub clamped_rays: bool,
-    /// Ray directions are normalised in object space, so that `t` differs there.
+    /// Ray directions are normalised in object space, so `t` has a different scale there.
     pub local_unit: bool,
-    /// Transform of normals.
+    /// Method for transforming normals.
     pub normals: Normals,
     /// Interpolated vertex normals are not normalised.
     pub unnormalized_mesh_normals: bool,
@@ -418,11 +423,11 @@ pub struct Bugs {
     pub spheres_turned: bool,
     /// Plane normals are negated.
     pub planes_turned: bool,
-    /// Permutation of the vertex normals of a triangle; 0 is the correct order.
+    /// Permutation of the vertex normals of a triangle. The value 0 is the correct order.
     pub normal_permutation: usize,
-    /// Shading normals are flipped to face the eye.
+    /// Shading normals are flipped so that they face the eye.
     pub faced: bool,
-    /// How ambient light is added.
+    /// Method for adding ambient light.
     pub ambient: Ambient,
     /// Cosine factor of the diffuse term.
     pub cosine: Cosine,
@@ -434,9 +439,9 @@ pub struct Bugs {
     pub diffuse_factor: Option<f32>,
     /// The diffuse term is multiplied by the diffuse colour twice.
     pub diffuse_twice: bool,
-    /// Normals of spheres.
+    /// Formula for the normals of spheres.
     pub sphere_normals: SphereNormal,
-    /// Colour of camera rays that miss; with `true`, other rays return it too.
+    /// Colour of camera rays that miss everything. With `true`, other rays also return it.
     pub sky: Option<(Color, bool)>,
     /// Mistakes in lights.
     pub lights: LightBugs,
@@ -444,32 +449,32 @@ pub struct Bugs {
     pub highlights: HighlightBugs,
     /// Mistakes in shadow rays.
     pub shadows: ShadowBugs,
-    /// How the contributions of the lights are added up.
+    /// Method for adding up the contributions of the lights.
     pub sum: LightSum,
     /// Mistakes in reflected and transmitted rays.
     pub bounces: SecondaryBugs,
 }
 
-/// Which side of a non-square picture a student's camera applies the field of view to.
+/// Side of a non-square picture to which a student's camera applies the field of view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Aspect {
-    /// The side that the dialect's program uses.
+    /// The field of view spans the side that the dialect's program uses.
     #[default]
     Correct,
-    /// The smaller side spans the field of view.
+    /// The field of view spans the smaller side.
     Smaller,
     /// The smaller side is scaled by the reciprocal of the correct factor.
     Turned,
 }
 
-/// Mistakes in the generation of camera rays, in addition to the quirks of the scene's dialect.
+/// Mistakes in generating camera rays, in addition to the quirks of the scene's dialect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBugs {
-    /// Position of the sample in the pixel; (0.5, 0.5) is the centre.
+    /// Position of the sample in the pixel. The centre is (0.5, 0.5).
     pub sample_position: Vec2,
-    /// Factor for the position on the picture plane.
+    /// Factor by which positions on the picture plane are multiplied.
     pub scale: f32,
-    /// How the field of view applies to non-square pictures.
+    /// Side to which the field of view applies in non-square pictures.
     pub aspect: Aspect,
     /// Number of rays per pixel.
     pub rays: RayCount,
@@ -478,7 +483,7 @@ pub struct CameraBugs {
 /// Number of camera rays per pixel in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RayCount {
-    /// The number set in the job.
+    /// The number that is set in the job.
     #[default]
     Correct,
     /// One ray through the centre.
@@ -494,7 +499,7 @@ impl Default for CameraBugs {
 }
 
 impl CameraBugs {
-    /// Returns the factors for positions on the picture plane, for each axis.
+    /// Returns the factors for positions on the picture plane, one for each axis.
     pub fn factor(&self, width: u32, height: u32) -> Vec2 {
         let (w, h) = (width as f32, height as f32);
         let ratio = w.max(h) / w.min(h);
@@ -511,52 +516,53 @@ impl CameraBugs {
 /// Mistakes in converting radiance to the eight-bit values of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OutputBug {
-    /// None: the transfer curve is correct.
+    /// There is no mistake, so the transfer curve is correct.
     #[default]
     Correct,
-    /// The value times this number, modulo 256.
+    /// The value is multiplied by this number and taken modulo 256.
     Wrapped(u16),
-    /// Divided by the brightest value in the picture.
+    /// The value is divided by the brightest value in the picture.
     Scaled,
-    /// Rounded instead of truncated, or the reverse.
+    /// The value is rounded instead of truncated, or the reverse.
     OtherRounding,
-    /// Raised to the reciprocal of this power; 0 stands for the sRGB curve.
+    /// The value is raised to the reciprocal of this power, where 0 stands for the sRGB curve.
     ExtraCurve(f32),
-    /// c / (1 + c).
+    /// The value c becomes c / (1 + c).
     Toned,
-    /// Multiplied by this factor.
+    /// The value is multiplied by this factor.
     Times(f32),
-    /// 1 - c.
+    /// The value c becomes 1 - c.
     Negative,
-    /// Grey: 0 is the mean of the channels, 1 the luma of Rec. 601, 2 the luminance, 3 the maximum,
-    /// 4 red, 5 green, 6 blue.
+    /// The picture is grey: 0 selects the mean of the channels, 1 the luma of Rec. 601, 2 the
+    /// luminance, 3 the maximum, 4 red, 5 green, and 6 blue.
     Grey(u32),
-    /// Quantised to this many levels.
+    /// The value is quantised to this many levels.
     Steps(u32),
-    /// Raised to this power; 0 stands for omitting the sRGB curve, or applying its inverse.
+    /// The value is raised to this power, where 0 stands for omitting the sRGB curve or applying
+    /// its inverse.
     MissingCurve(f32),
 }
 
-/// How a student's program rearranges the pixels and channels of a picture, for example by
-/// mirroring it.
+/// The way in which a student's program rearranges the pixels and channels of a picture, for
+/// example by mirroring it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelOrder {
-    /// Columns and rows are exchanged, if the picture is square.
+    /// Columns and rows are exchanged if the picture is square.
     pub exchange: bool,
     /// The order of the columns is reversed.
     pub columns_back: bool,
     /// The order of the rows is reversed.
     pub rows_back: bool,
-    /// Order of the channels, as an index into [`PixelOrder::ORDERS`]: 0 is unchanged, 1 exchanges
-    /// red and blue.
+    /// Order of the channels, as an index into [`PixelOrder::ORDERS`]. The index 0 means unchanged,
+    /// and 1 exchanges red and blue.
     pub channels: u8,
-    /// Shift of the picture in pixels, to the right and down.
+    /// Shift of the picture in pixels, to the right and downwards.
     pub moved: (i32, i32),
     /// Pixels without a source are black instead of repeating the border.
     pub black_border: bool,
     /// Pixels that leave the picture on one side enter it on the other.
     pub rolled: bool,
-    /// Blocks of 2 by 2 pixels have the same value.
+    /// All pixels in each block of 2 by 2 have the same value.
     pub halved: bool,
 }
 
@@ -564,13 +570,13 @@ impl PixelOrder {
     /// Source channels of red, green and blue, for each order.
     pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]];
 
-    /// Returns true if the pixel at a position has no source and is black.
+    /// Returns true if the pixel at a position has no source and is therefore black.
     pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
         let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
         self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
     }
 
-    /// Returns the source of the pixel at a position.
+    /// Returns the source position of the pixel at a position.
     pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
         let x = if self.columns_back { width - 1 - x } else { x };
         let y = if self.rows_back { height - 1 - y } else { y };

@@ -1,5 +1,5 @@
-//! Finds the mistakes that explain a picture, by rendering with each mistake of the table, alone
-//! and in pairs.
+//! Finds the mistakes that explain a picture by rendering with each mistake in the table, both
+//! alone and in pairs.
 
 use super::bugs::PixelOrder;
 use super::fit::{Fit, difference, differing, fit, sampled};
@@ -13,8 +13,8 @@ use durer_scene::math::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Number of pixels per trial: `FEW_PIXELS` for all mistakes, then `COARSE_PIXELS` and
-/// `FULL_PIXELS` for the best ones.
+/// Number of pixels per trial. `FEW_PIXELS` is used for all mistakes, and `COARSE_PIXELS` and then
+/// `FULL_PIXELS` are used for the best ones.
 const FEW_PIXELS: usize = 400;
 const COARSE_PIXELS: usize = 1600;
 const FULL_PIXELS: usize = 16_000;
@@ -26,19 +26,21 @@ const PAIRS_PER_ROUND: [usize; 3] = [200, 30, 8];
 const MAX_SINGLES: usize = 60;
 /// Number of pixels above which the brightest value is not computed and acne is not checked.
 const MAX_FULL_PIXELS: usize = 160_000;
-/// Number of best trials whose value is refined and which are paired with all other mistakes.
+/// Number of best trials whose values are refined and that are paired with all other mistakes.
 const MAX_BEST: usize = 12;
-/// Only the `CLOSEST` best trials are tried at `FULL_PIXELS`, and those that explain more than
-/// `CLOSE`.
+/// Only the `CLOSEST` best trials, and those that explain more than `CLOSE`, are tried at
+/// `FULL_PIXELS`.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Half a step of an eight-bit value, and minimum number of pixels that must show another rounding.
+/// Half a step of an eight-bit value, and minimum number of pixels that must show a different
+/// rounding.
 const HALF_STEP: f32 = 0.5 / 255.0;
 const MIN_ROUNDED: usize = 30;
 /// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
 
-/// Mistakes tried together, the pixels they produce, and how well those match the test picture.
+/// Mistakes that are tried together, the pixels that they produce, and how well those pixels match
+/// the test picture.
 #[derive(Clone, Debug)]
 struct Trial {
     mistakes: Vec<(&'static Mistake, f32)>,
@@ -80,7 +82,7 @@ impl Pixels {
     }
 }
 
-/// State of a search for mistakes: the pictures, the view, and the scene without mistakes.
+/// State of a search for mistakes, with the pictures, the view, and the scene without mistakes.
 struct Search<'a> {
     question: &'a DiagnosisInput<'a>,
     view: View<'a>,
@@ -96,7 +98,7 @@ fn all_tried(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnos
     let (width, height) = (input.job.width, input.job.height);
     let (reference, view, base) = prepare(input);
     let test = values(input.test, view.scale, input.transfer);
-    // A picture of a single colour could be explained by any mistake that erases the picture.
+    // Any mistake that erases the picture could explain a picture of a single colour.
     if test.iter().all(|pixel| *pixel == test[0]) {
         return Diagnosis { reference_difference: reference_difference(input), ..Diagnosis::default() };
     }
@@ -173,7 +175,7 @@ fn all_tried(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnos
     progress(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(PAIR_PIXELS), &some, &coarse, &full]);
     progress(1.0);
-    // Two mistakes always explain more than one, so a pair must explain much more.
+    // Two mistakes always explain more than one does, so a pair must explain much more.
     let rest =
         |explanations: &[Explanation]| explanations.first().map_or(1.0, |explanations| 1.0 - explanations.explained);
     let explanations = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
@@ -189,7 +191,7 @@ fn all_tried(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnos
     }
 }
 
-/// Returns up to eight explanations, best first.
+/// Returns up to eight explanations, with the best one first.
 fn tried(trials: &[Trial]) -> Vec<Explanation> {
     let mut all: Vec<Explanation> = trials.iter().map(Trial::explanation).collect();
     all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
@@ -197,8 +199,8 @@ fn tried(trials: &[Trial]) -> Vec<Explanation> {
     all
 }
 
-/// Returns the share of the pixels, estimated from a sample, in which a render of the scene differs
-/// from the reference.
+/// Returns the fraction of the pixels, estimated from a sample, in which a render of the scene
+/// differs from the reference.
 pub fn reference_difference(input: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepare(input);
     let pixels = sampled(input.job.width, &reference, &reference, 2 * FEW_PIXELS);
@@ -209,14 +211,14 @@ pub fn reference_difference(input: &DiagnosisInput) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// Returns every mistake on its own, with each of its values.
+    /// Returns every mistake separately, with each of its values.
     fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
         let lights = self.base.world.lights().len();
         let rows = MISTAKES.iter().copied().flatten();
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
     }
 
-    /// Marks pixels that do not depend on rounding: they stay the same if samples are slightly
+    /// Marks the pixels that do not depend on rounding. They stay the same if samples are slightly
     /// offset or epsilon changes.
     fn steady(&self, pixels: &Pixels) -> Vec<bool> {
         let aside = |by: f32| {
@@ -241,15 +243,15 @@ impl<'a> Search<'a> {
         all.into_par_iter().map(|mistakes| self.trial(mistakes, pixels)).collect()
     }
 
-    /// Renders the scene with mistakes and measures how well it matches the test picture.
+    /// Renders the scene with mistakes and measures how well the result matches the test picture.
     fn trial(&self, mistakes: Vec<(&'static Mistake, f32)>, pixels: &Pixels) -> Trial {
         let mut variant = self.base.clone();
         for (mistake, value) in &mistakes {
             (mistake.apply)(&mut variant, *value);
         }
         let mut rendered = self.view.picture(&variant, &pixels.places);
-        // If the reference differs from the rendered scene at a pixel, add the change caused by the
-        // mistake to the reference.
+        // If the reference differs from the rendered scene at a pixel, the change caused by the
+        // mistake is added to the reference.
         if variant.pixel_order == PixelOrder::default() {
             for ((rendered, base), reference) in rendered.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
                 if differing(&[*base], &[*reference]) > 0 {
@@ -261,8 +263,8 @@ impl<'a> Search<'a> {
         Trial { mistakes, rendered, fit }
     }
 
-    /// Returns a mistake with the value that fits best. Searches at few pixels, and rounds the
-    /// value if that fits equally well at more pixels.
+    /// Returns a mistake with the value that fits best. Searches with a small number of pixels, and
+    /// rounds the value if the rounded value fits equally well with more pixels.
     fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
         let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
@@ -279,14 +281,14 @@ impl<'a> Search<'a> {
             }
             step = step.sqrt();
         }
-        // Prefer a round number that fits as well.
+        // Prefer a round number if it fits as well.
         let round = (at * 20.0).round() / 20.0;
         let fits = |tried| explained(tried, more) >= explained(at, more) - 0.002;
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Tries pairs of the best mistakes with all others, and the best pairs with increasing numbers
-    /// of pixels.
+    /// Tries pairs of the best mistakes with all others, and then the best pairs with increasing
+    /// numbers of pixels.
     fn pairs(
         &self,
         best_of: &[Trial],
@@ -302,8 +304,8 @@ impl<'a> Search<'a> {
                 let (a, b) = (a.mistakes[0], b.mistakes[0]);
                 let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
                 let pair = (key(a).min(key(b)), key(a).max(key(b)));
-                // Mistakes that depend on rounding fit any picture, so they explain nothing in a
-                // pair.
+                // Mistakes that depend on rounding fit any picture, so they explain nothing when
+                // they are part of a pair.
                 let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
                 if a.0.name != b.0.name && !shaky && known.insert(pair) {
                     pairs.push(vec![a, b]);
@@ -346,7 +348,8 @@ impl<'a> Search<'a> {
         fits.then(|| Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 
-    /// Checks if the picture shows acne, that is, rays that hit the surface they start from.
+    /// Checks whether the picture shows acne, which means that rays hit the surface that they start
+    /// from.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Explanation> {
         let lights = self.base.world.lights().len();
         if all.len() > MAX_FULL_PIXELS || !(1..=4).contains(&lights) || !self.base.settings.shadows {
@@ -355,7 +358,7 @@ impl<'a> Search<'a> {
         let width = self.question.job.width as usize;
         let differ = speckles::isolated_pixels(reference, test, width)?;
         let pixels: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
-        // With acne, reflected rays return nothing or hit their own surface again.
+        // If there is acne, reflected rays return nothing or hit their own surface again.
         let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
         let dark = |of: u32| {
             let (off, way) = (of / bounces, of % bounces);
@@ -380,8 +383,8 @@ fn sort(trials: &mut [Trial]) {
     trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
 }
 
-/// Returns the mistakes of the best trials: three quarters by squared difference, the rest by
-/// number of matching pixels.
+/// Returns the mistakes of the best trials. Three quarters of them are chosen by squared
+/// difference, and the rest by number of matching pixels.
 fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
     sort(trials);
     let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
@@ -397,25 +400,25 @@ fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
     sorted.into_iter().take(4)
 }
 
-/// How well a trial must fit to count as an explanation.
+/// Minimum quality of fit for a trial to count as an explanation.
 struct Thresholds {
     explained: f64,
     matched: f64,
 }
 
 impl Thresholds {
-    /// For one mistake, if the picture also has another difference.
+    /// For one mistake, if there is also another difference in the picture.
     const NEARLY: Thresholds = Thresholds { explained: 0.985, matched: 0.9 };
-    // For one mistake. It leaves only rounding differences at edges; a larger difference means that
-    // there is another mistake.
+    // For one mistake on its own. It may leave only rounding differences at edges. A larger
+    // difference means that there is another mistake.
     const SINGLE: Thresholds = Thresholds { explained: 0.99, matched: 0.95 };
-    /// For a pair of mistakes, which fits more pictures by chance than a single one.
+    /// For a pair of mistakes, which fits more pictures by chance than a single mistake does.
     const PAIR: Thresholds = Thresholds { explained: 0.995, matched: 0.97 };
     /// For a mistake whose value was fitted.
     const FITTED: Thresholds = Thresholds { explained: 0.999, matched: 0.97 };
-    /// Fit at which the search ends.
+    /// Quality of fit at which the search ends.
     const CLEAR: Thresholds = Thresholds { explained: 0.995, matched: 0.98 };
-    /// Practically a perfect fit.
+    /// The fit is practically perfect.
     const PERFECT: Thresholds = Thresholds { explained: 0.998, matched: 0.995 };
 
     fn passes(&self, fit: &Fit) -> bool {
@@ -423,8 +426,8 @@ impl Thresholds {
     }
 }
 
-/// Returns the explanations that pass the thresholds; none if no trial does, or if trials with
-/// different pictures fit almost equally well.
+/// Returns the explanations that pass the thresholds. There are none if no trial passes, or if
+/// trials with different pictures fit almost equally well.
 fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &Thresholds) -> Vec<Explanation> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
@@ -445,7 +448,7 @@ fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &T
         !equal(other)
             && rest(other) < 2.0 * rest(best) + slack
             && other.fit.matched > best.fit.matched - off
-            // Another value of the same mistake is not a rival.
+            // A different value of the same mistake is not a rival.
             && !one_kind(&other.mistakes, &best.mistakes)
     };
     let rivals: Vec<&Trial> = trials.iter().filter(rival).collect();
@@ -454,12 +457,12 @@ fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &T
     }
     let mut explanations: Vec<Explanation> = Vec::new();
     for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
-        // Report a mistake only once, even if several values fit.
+        // Report a mistake only once, even if several of its values fit.
         if !explanations.iter().any(|explanations| one_kind(&explanations.mistakes, &trial.mistakes)) {
             explanations.push(trial.explanation());
         }
     }
-    // Prefer mistakes whose value was not fitted.
+    // Prefer mistakes whose values were not fitted.
     let plain =
         |explanations: &Explanation| !explanations.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
     if explanations.iter().any(plain) {
@@ -470,7 +473,7 @@ fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &T
 
 /// Returns true if two explanations differ only in the values of their mistakes.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    // The same mistake in another light counts as different.
+    // The same mistake counts as different if it affects another light.
     let alike =
         |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))

@@ -11,16 +11,18 @@ pub(super) const VISIBLE: f32 = 2.5 / 255.0;
 const MAX_OUTLIERS: usize = 4;
 const MIN_PIXELS: usize = 30;
 
-/// How well a rendered picture matches the test picture, where either differs from the reference.
+/// Quality of the match between a rendered picture and the test picture, measured where either
+/// differs from the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
-    /// Share of the squared difference that is explained, from minus infinity to 1.
+    /// Fraction of the squared difference that is explained, from minus infinity to 1.
     pub explained: f64,
-    /// Share of matching pixels among those where either picture differs from the reference.
+    /// Fraction of matching pixels among the pixels where either picture differs from the
+    /// reference.
     pub matched: f64,
 }
 
-/// Returns the squared difference of two values in excess of rounding.
+/// Returns the squared difference of two values beyond rounding.
 fn excess(a: Vec3, b: Vec3) -> f64 {
     let rest = ((a - b).abs() - ROUNDING).max(Vec3::ZERO);
     f64::from(rest.length_squared())
@@ -30,7 +32,7 @@ fn differs_visibly(a: Vec3, b: Vec3) -> bool {
     (a - b).abs().max_element() > VISIBLE
 }
 
-/// Returns the squared difference of two pictures in excess of rounding.
+/// Returns the squared difference of two pictures beyond rounding.
 pub(super) fn difference(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| excess(*a, *b)).sum()
 }
@@ -52,7 +54,7 @@ pub(super) fn fit(reference: &[Vec3], test: &[Vec3], rendered: &[Vec3]) -> Fit {
     }
     let explained = if total > 0.0 { 1.0 - rest / total } else { 0.0 };
     let strays = either - agree;
-    // If only a few pixels differ, an outlier at an edge would dominate, so ignore outliers.
+    // If only a few pixels differ, an outlier at an edge would dominate, so outliers are ignored.
     if strays > 0 && strays <= MAX_OUTLIERS.max(reference.len() / 2000) && agree >= MIN_PIXELS.max(8 * strays) {
         let unchanged = |test: &Vec3, rendered: &Vec3| !differs_visibly(*test, *rendered);
         let part = |of: &[Vec3]| -> f64 {
@@ -67,21 +69,23 @@ pub(super) fn fit(reference: &[Vec3], test: &[Vec3], rendered: &[Vec3]) -> Fit {
     Fit { explained, matched: agree as f64 / either.max(1) as f64 }
 }
 
-/// Selects at most `most` pixels: half of them evenly spread, half where the pictures differ.
+/// Selects at most `most` pixels. Half of them are evenly spread, and half are where the pictures
+/// differ.
 pub(super) fn sampled(width: u32, reference: &[Vec3], test: &[Vec3], most: usize) -> Vec<usize> {
     let all = reference.len();
     if all <= most {
         return (0..all).collect();
     }
     let spread = |list: usize, count: usize| {
-        // Stratified by the golden ratio: one index in each of `count` equal parts.
+        // The selection is stratified by the golden ratio, with one index in each of `count` equal
+        // parts.
         (0..count).map(move |i| {
             let part = (i as f64 * 0.618_033_988_749_895).fract();
             (((i as f64 + part) * list as f64 / count as f64) as usize).min(list - 1)
         })
     };
     let mut differ: Vec<usize> = (0..all).filter(|&i| differs_visibly(reference[i], test[i])).collect();
-    // Sort by tiles of 8x8 pixels, so that subsampling covers all regions.
+    // Sort by tiles of 8x8 pixels so that subsampling covers all regions.
     differ.sort_by_key(|i| (i / width as usize / 8, i % width as usize / 8));
     let mut chosen: Vec<usize> = spread(all, most / 2).collect();
     match differ.len() {

@@ -10,12 +10,12 @@ use durer_render::world::World;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Scene;
 
-/// Maximum share of pixels in which a render of the scene may differ from the reference. Above it,
-/// no mistakes are searched for.
+/// Maximum fraction of pixels in which a render of the scene may differ from the reference. If the
+/// fraction is larger, no mistakes are searched for.
 pub(super) const MAX_DIFFERENCE: f64 = 0.25;
 
-/// Input of a search for mistakes: the reference picture, the picture to diagnose, and the scene of
-/// both.
+/// Input of a search for mistakes: the reference picture, the picture to diagnose, and the scene
+/// that both show.
 #[derive(Clone, Copy, Debug)]
 pub struct DiagnosisInput<'a> {
     /// The parsed scene.
@@ -32,33 +32,33 @@ pub struct DiagnosisInput<'a> {
     pub test: &'a Picture,
 }
 
-/// One or two mistakes that together explain a picture, and how well they do.
+/// One or two mistakes that together explain a picture, and how well they do so.
 #[derive(Clone, Debug)]
 pub struct Explanation {
     /// The mistakes, each with its value.
     pub mistakes: Vec<(&'static Mistake, f32)>,
-    /// Share of the squared difference that they explain, ignoring rounding.
+    /// Fraction of the squared difference that the mistakes explain, ignoring rounding.
     pub explained: f64,
-    /// Share of the differing pixels that they reproduce.
+    /// Fraction of the differing pixels that the mistakes reproduce.
     pub matched: f64,
 }
 
 /// Result of a search for the mistakes in a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
-    /// Share of the pixels in which a render of the scene differs from the reference.
+    /// Fraction of the pixels in which a render of the scene differs from the reference.
     pub reference_difference: f64,
-    /// Explanations of the picture. More than one if several mistakes give the same picture; empty
-    /// if there is none.
+    /// Explanations of the picture. There is more than one if several mistakes produce the same
+    /// picture, and the list is empty if there is none.
     pub explanations: Vec<Explanation>,
-    /// A mistake that reproduces nearly all of the difference, if the picture also has another
-    /// difference. `None` if `explanations` is not empty.
+    /// A mistake that reproduces nearly all of the difference, if there is also another difference
+    /// in the picture. It is `None` if `explanations` is not empty.
     pub nearly: Option<Explanation>,
-    /// Remark on the pictures if no mistake is named.
+    /// Remark about the pictures if no mistake is named.
     pub remark: Option<String>,
-    /// The closest trials, including those that do not pass as explanations.
+    /// The trials that fit best, including those that do not count as explanations.
     pub closest_trials: Vec<Explanation>,
-    /// Formulas of the scene, for describing the mistakes.
+    /// Formulas of the scene, which are used to describe the mistakes.
     pub formulas: Formulas,
 }
 

@@ -1,28 +1,28 @@
-//! The mistakes that a student's path tracer can make, as options of its tracer.
+//! The mistakes that a student's path tracer can make, given as options of its tracer.
 
 /// Power of the cosine at a surface in a student's path tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CosinePower {
-    /// cos, which is correct.
+    /// The power is 1, which is correct.
     #[default]
     Correct,
-    /// No cosine.
+    /// The power is 0, so there is no cosine.
     None,
-    /// cos².
+    /// The power is 2.
     Twice,
 }
 
-/// How a student's path tracer samples the scattered direction at a surface.
+/// Method by which a student's path tracer samples the scattered direction at a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirectionSampling {
-    /// BSDF sampling, divided by the pdf, which is correct.
+    /// BSDF sampling divided by the pdf, which is correct.
     #[default]
     Correct,
-    /// BSDF sampling, not divided by the pdf.
+    /// BSDF sampling that is not divided by the pdf.
     Undivided,
-    /// Uniform over the hemisphere, but divided by the pdf of cosine sampling.
+    /// Uniform sampling over the hemisphere, but divided by the pdf of cosine sampling.
     Uniform,
-    /// BSDF sampling, but the local coordinates are used as world-space coordinates.
+    /// BSDF sampling in which the local coordinates are used as world-space coordinates.
     LocalFrame,
     /// BSDF sampling with the same random number for both dimensions.
     OneNumber,
@@ -31,25 +31,25 @@ pub enum DirectionSampling {
 /// The factor that a student's path tracer omits from a light sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MissingFactor {
-    /// None, which is correct.
+    /// No factor is omitted, which is correct.
     #[default]
     Nothing,
-    /// 1 / d².
+    /// The factor 1 / d² is omitted.
     Distance,
-    /// The cosine at the light.
+    /// The cosine at the light is omitted.
     Cosine,
-    /// The light's area.
+    /// The area of the light is omitted.
     Area,
-    /// The division by the probability of choosing the light.
+    /// The division by the probability of choosing the light is omitted.
     Choice,
-    /// The division by the sample's pdf.
+    /// The division by the pdf of the sample is omitted.
     Density,
 }
 
 /// Mistakes in a student's environment light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EnvironmentBug {
-    /// None: directions and pdf are correct.
+    /// There is no mistake: directions and pdf are correct.
     #[default]
     Correct,
     /// The environment is upside down.
@@ -58,15 +58,15 @@ pub enum EnvironmentBug {
     NoSine,
 }
 
-/// How a student's path tracer computes a pixel from its samples.
+/// Method by which a student's path tracer computes a pixel from its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PixelMean {
-    /// Mean of the radiance, which is correct.
+    /// The pixel is the mean of the radiance, which is correct.
     #[default]
     Light,
-    /// Mean of the radiance clamped to [0, 1].
+    /// The pixel is the mean of the radiance clamped to [0, 1].
     Clamped,
-    /// Mean of the display values.
+    /// The pixel is the mean of the display values.
     Shown,
 }
 
@@ -75,11 +75,11 @@ pub enum PixelMean {
 pub struct PathBugs {
     /// Power of the cosine at surfaces.
     pub cosine_power: CosinePower,
-    /// The diffuse lobe lacks the factor 1/π; with `true`, only for light samples.
+    /// The diffuse lobe lacks the factor 1/π. With `true`, this affects only light samples.
     pub no_pi: Option<bool>,
-    /// Sampling of scattered directions.
+    /// Method for sampling scattered directions.
     pub direction_sampling: DirectionSampling,
-    /// Factor omitted from light samples.
+    /// Factor that is omitted from light samples.
     pub missing_factor: MissingFactor,
     /// Light and BSDF samples are added without MIS weights.
     pub unweighted: bool,
@@ -89,6 +89,6 @@ pub struct PathBugs {
     pub two_sided: bool,
     /// Environment light.
     pub environment: EnvironmentBug,
-    /// Computation of a pixel from its samples.
+    /// Method for computing a pixel from its samples.
     pub pixel_mean: PixelMean,
 }

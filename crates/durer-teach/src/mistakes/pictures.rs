@@ -8,13 +8,13 @@ use durer_render::render::{Job, sample_places};
 use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// How the compared pictures are rendered and encoded: size, samples, transfer curve and scale of
-/// the values.
+/// Way in which the compared pictures are rendered and encoded: their size, samples, transfer curve
+/// and scale of values.
 #[derive(Clone, Debug)]
 pub(super) struct View<'j> {
-    /// Size of the picture and samples per pixel.
+    /// Size of the picture, and number of samples per pixel.
     pub job: &'j Job,
-    /// Scale of the values: display values or linear light.
+    /// Scale of the values, which is either display values or linear light.
     pub scale: Scale,
     /// Transfer curve for display values.
     pub transfer: Transfer,
@@ -23,7 +23,7 @@ pub(super) struct View<'j> {
 }
 
 impl View<'_> {
-    /// Renders pixels in linear light.
+    /// Renders pixels as linear light.
     pub fn light(&self, variant: &SceneVariant, pixels: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
         let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs);
@@ -50,7 +50,7 @@ impl View<'_> {
         pixels.par_iter().with_min_len(16).map(pixel).collect()
     }
 
-    /// Converts linear light to file values, including output mistakes.
+    /// Converts linear light to file values, including mistakes in the output.
     pub fn values(&self, output: OutputBug, light: &[Color]) -> Vec<Vec3> {
         light.iter().map(|&light| self.value(output, light)).collect()
     }
@@ -72,7 +72,7 @@ impl View<'_> {
     }
 
     fn value(&self, output: OutputBug, light: Color) -> Vec3 {
-        // Show huge values as white, although an old program overflows there.
+        // Show huge values as white, although they overflow in an old program.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == OutputBug::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
@@ -92,7 +92,7 @@ impl View<'_> {
         let transfer = match (output, self.transfer) {
             (OutputBug::OtherRounding, Transfer::Course) => Transfer::Linear,
             (OutputBug::OtherRounding, Transfer::Linear) => Transfer::Course,
-            // Without the curve, the file has linear values.
+            // Without the curve, the file contains linear values.
             (OutputBug::MissingCurve(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
@@ -102,7 +102,7 @@ impl View<'_> {
             return light.map(wrapped);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
-        // A second curve is applied before quantisation.
+        // The second curve is applied before quantisation.
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {

@@ -1,21 +1,24 @@
-//! Detects acne: specks where rays hit the surface that they start from, which depends on rounding.
+//! Detects acne, which consists of specks where rays hit the surface that they start from. It
+//! depends on rounding.
 
 use super::fit::VISIBLE;
 use durer_scene::math::Vec3;
 
-/// Minimum share of the specks that must be as dark as in shadow.
+/// Minimum fraction of the specks that must be as dark as they would be in shadow.
 const MIN_MATCHING: f64 = 0.94;
-/// Minimum share of neighbouring pairs of which only one pixel is a speck: a constant, plus a term
-/// for the borders of a few regions with the same number of pixels. A single disc has 2.3 / √count.
+/// Minimum fraction of neighbouring pairs in which only one pixel is a speck. It consists of a
+/// constant and a term for the borders of a few regions with the same number of pixels. For a
+/// single disc, the fraction is 2.3 / √count.
 const MIN_ISOLATED: f64 = 0.06;
 const BORDER_TERM: f64 = 4.0;
 
-/// Returns the indices of the differing pixels if they are isolated specks rather than regions.
+/// Returns the indices of the differing pixels if the pixels are isolated specks rather than
+/// regions.
 pub(super) fn isolated_pixels(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
     let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > VISIBLE;
     let all: Vec<bool> = (0..reference.len()).map(differs).collect();
     let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
-    // Regions have an interior; specks consist mostly of borders.
+    // Regions have an interior, whereas specks consist mostly of borders.
     let (mut pairs, mut broken) = (0_usize, 0_usize);
     for i in 0..reference.len() {
         let right = (i + 1) % width != 0 && i + 1 < all.len();
@@ -31,9 +34,9 @@ pub(super) fn isolated_pixels(reference: &[Vec3], test: &[Vec3], width: usize) -
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
-/// Returns the share of the differing pixels that are as dark as in the shadow of some lights, if
-/// it is at least `MIN_MATCHING`. `shadowed` has the values of these pixels in pictures with one or more
-/// lights off.
+/// Returns the fraction of the differing pixels that are as dark as in the shadow of some lights,
+/// if it is at least `MIN_MATCHING`. `shadowed` contains the values of these pixels in pictures
+/// with one or more lights switched off.
 pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
     let alike =
         |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= VISIBLE);

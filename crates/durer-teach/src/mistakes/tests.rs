@@ -1,4 +1,4 @@
-//! Tests of the student's tracer without mistakes, and of the table of mistakes.
+//! Tests the student's tracer without mistakes, and the table of mistakes.
 
 use super::pictures::View;
 use super::table::MISTAKES;
@@ -68,7 +68,7 @@ fn variant_without_mistakes_renders_the_correct_picture() {
             for place in job.whole().pixel_positions() {
                 let ray = center_ray(&variant.world, &raster, place).unwrap();
                 let (own, right) = (tracer.radiance(&ray), whitted.radiance(&ray, &mut ()));
-                // The program of a year may divide by zero.
+                // The official program of a year may divide by zero.
                 let same = own == right || own.is_nan() && own.is_nan_mask() == right.is_nan_mask();
                 assert!(same, "{} at {place:?}: {own} {right}", dialect.name());
             }
@@ -86,7 +86,7 @@ fn every_row_has_a_unique_name_and_a_lesson_step() {
     }
 }
 
-/// Renders the eight-bit picture of a variant; also returns its brightest value.
+/// Renders the eight-bit picture of a variant, and also returns its brightest value.
 fn picture(variant: &SceneVariant, job: &Job, max_value: f32) -> (Picture, f32) {
     let places: Vec<(u32, u32)> = job.whole().pixel_positions().collect();
     let view = View { job, scale: Scale::Display, transfer: Transfer::Course, max_value };
@@ -195,7 +195,8 @@ fn each_usual_mistake_is_named() {
             wrong.push(format!("{name} {value}: {messages:?}"));
         }
     };
-    // Make the scene bright enough to clamp, with little glass, so that every term is visible.
+    // Make the scene so bright that values are clamped, with little glass, so that every term is
+    // visible.
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
     for (name, value) in COMMON {
         judge(&bright, job(), name, value);
@@ -212,7 +213,7 @@ fn each_usual_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Further mistakes that are common in this course.
+/// Other mistakes that are common in this course.
 const ALSO_COMMON: [(&str, f32); 21] = [
     ("sphere-normals", 0.0),
     ("sphere-roots", 0.0),

@@ -1,4 +1,4 @@
-//! A scene with its rules and the mistakes with which it is rendered.
+//! A scene, its rules, and the mistakes with which it is rendered.
 
 use super::bugs::{Bugs, CameraBugs, OutputBug, PixelOrder};
 use super::path_bugs::PathBugs;
@@ -18,13 +18,13 @@ use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// A scene with the mistakes of a student's program: rows of the table of mistakes change it before
+/// A scene with the mistakes of a student's program. Rows of the table of mistakes change it before
 /// it is rendered.
 #[derive(Clone, Debug)]
 pub struct SceneVariant<'s> {
     /// The parsed scene.
     pub scene: &'s Scene,
-    /// The world: geometry, lights, materials, camera and rules.
+    /// The world, which consists of geometry, lights, materials, camera and rules.
     pub world: World,
     /// Options of Whitted's method.
     pub settings: RenderSettings,
@@ -40,7 +40,7 @@ pub struct SceneVariant<'s> {
     pub paths: PathBugs,
 }
 
-/// Returns true if some light in the scene file has three attenuation coefficients.
+/// Returns true if at least one light in the scene file has three attenuation coefficients.
 pub fn three_factors(scene: &Scene) -> bool {
     let factors = |light: &Light| match light {
         Light::Point(p) => p.attenuation.is_some() && p.falloff.is_none(),
@@ -52,7 +52,7 @@ pub fn three_factors(scene: &Scene) -> bool {
 /// Factor by which a triangle is extended if the test of one side is missing.
 const EXTENSION: f32 = 100.0;
 
-/// Kind of shape that the course's programs implement, and whose intersection mistakes can affect.
+/// Kind of shape that the course's programs implement and that mistakes in intersection can affect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CourseShape {
     /// `Sphere`.
@@ -65,7 +65,8 @@ pub enum CourseShape {
     Mesh,
 }
 
-/// Returns the course's kind of a geometry; `None` if the course's programs do not have it.
+/// Returns the kind of shape to which a geometry belongs, or `None` if the course's programs do not
+/// have it.
 pub fn course_shape(geometry: &Geometry) -> Option<CourseShape> {
     match geometry {
         Geometry::Mesh(_) => Some(CourseShape::Mesh),
@@ -86,7 +87,7 @@ pub fn course_shape(geometry: &Geometry) -> Option<CourseShape> {
     }
 }
 
-/// Function that multiplies a transform's matrices, correctly or with a mistake.
+/// Function that multiplies a transform's matrices, either correctly or with a mistake.
 pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> SceneVariant<'s> {
@@ -96,8 +97,8 @@ impl<'s> SceneVariant<'s> {
         SceneVariant { scene, world, settings, bugs, camera_bugs: aim, output, pixel_order: turn, paths }
     }
 
-    /// Returns the camera ray of a pixel. `place` is a position in pixels from the upper left
-    /// corner.
+    /// Returns the camera ray of a pixel. `place` is a position in pixels, measured from the upper
+    /// left corner.
     pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
         let point = |place: Vec2| {
             raster.point(place + self.camera_bugs.sample_position - 0.5)
@@ -112,7 +113,7 @@ impl<'s> SceneVariant<'s> {
         raster(&self.world, width, height)
     }
 
-    /// Returns true if some light in the scene file has three attenuation coefficients.
+    /// Returns true if at least one light in the scene file has three attenuation coefficients.
     pub fn has_three_factors(&self) -> bool {
         three_factors(self.scene)
     }
@@ -122,7 +123,8 @@ impl<'s> SceneVariant<'s> {
         self.change_rules(|rules| rules.quirks ^= compat.bit());
     }
 
-    /// Changes the dialect's rules. The camera basis, lights, materials and objects stay the same.
+    /// Changes the dialect's rules. The camera basis, the lights, the materials and the objects do
+    /// not change.
     pub fn change_rules(&mut self, change: impl FnOnce(&mut DialectRules)) {
         let mut rules = self.world.rules().clone();
         change(&mut rules);
@@ -142,7 +144,7 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Changes every Phong material.
+    /// Changes all Phong materials.
     pub fn phongs(&mut self, change: impl Fn(&mut Phong)) {
         for material in &mut self.world.edit().materials {
             if let Material::Phong(phong) = material {
@@ -151,7 +153,7 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Switches all highlights from Blinn's model to Phong's, or the reverse.
+    /// Switches all highlights from Blinn's model to Phong's model, or the reverse.
     pub fn swap_highlight_model(&mut self) {
         let behind = self.world.rules().has(Quirk::HighlightBehind);
         self.phongs(|phong| {
@@ -164,9 +166,9 @@ impl<'s> SceneVariant<'s> {
         });
     }
 
-    /// Adds highlights to materials with a specular colour, if the dialect has no highlights.
+    /// Adds highlights to materials with a specular colour if the dialect has no highlights.
     ///
-    /// `form` is 0 for Phong's model, 1 for Phong's model on the lit side only, 2 for Blinn's
+    /// `form` is 0 for Phong's model, 1 for Phong's model on the lit side only, and 2 for Blinn's
     /// model.
     pub fn add_highlights(&mut self, form: f32) {
         if self.world.rules().highlight != Highlight::None {
@@ -205,8 +207,8 @@ impl<'s> SceneVariant<'s> {
         if let Some(root) = &self.scene.root {
             object_transforms(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut transforms);
         }
-        // Compilation splits solids into pieces; do nothing if objects and transforms do not
-        // correspond.
+        // Compilation splits solids into pieces, so nothing is done if objects and transforms do
+        // not correspond.
         if transforms.len() != self.world.objects().len() {
             return;
         }
@@ -277,7 +279,7 @@ impl<'s> SceneVariant<'s> {
     }
 }
 
-/// Collects the matrices of all objects, in the order of compilation.
+/// Collects the matrices of all objects in the order of compilation.
 fn object_transforms(
     group: &Group,
     to_world: DAffine3,

@@ -7,10 +7,10 @@ use crate::triangles::tree::TriangleBvh;
 
 /// Maximum number of rays in a packet.
 pub const RAYS: usize = 64;
-/// Rays of a packet, in four groups of sixteen.
+/// Rays of a packet, stored in four groups of sixteen.
 pub type RayGroups = [PacketRays; RAYS / WIDE];
 
-/// Up to 64 coherent rays that traverse a [`TriangleBvh`] together, with their hits so far.
+/// Up to 64 coherent rays that traverse a [`TriangleBvh`] together, and the hits found so far.
 pub struct Packet<'a> {
     pub bvh: &'a TriangleBvh,
     pub axes: PacketAxes,
@@ -26,6 +26,6 @@ pub struct Packet<'a> {
     pub hit_mask: u64,
     /// Upper bound on the `t` of all rays.
     pub limit: f32,
-    /// Triangles that were hit so far. The first entry is a placeholder for no hit.
+    /// Triangles that have been hit so far. The first entry is a placeholder that means no hit.
     pub packet_hits: &'a mut Vec<HitTriangle>,
 }

@@ -8,7 +8,7 @@ use crate::triangles::leaf::{ProjectedTriangles, by_corner, ends, from_origin};
 use crate::triangles::number;
 use std::mem::MaybeUninit;
 
-/// Corners of the triangles of a leaf, with permuted axes, from which single triangles are
+/// Corners of the triangles of a leaf, with the axes permuted, from which single triangles are
 /// broadcast to all lanes.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
 
@@ -35,7 +35,8 @@ impl Corners {
     }
 }
 
-/// Projects triangles along rays. With `POINT`, the corners are relative to the common origin.
+/// Projects triangles along rays. If `POINT` is true, the corners are relative to the common
+/// origin.
 #[inline(always)]
 fn flat<N: FloatLanes, const POINT: bool>(
     numbers: N,
@@ -50,7 +51,7 @@ fn flat<N: FloatLanes, const POINT: bool>(
 }
 
 impl Packet<'_> {
-    /// Corners relative to the common origin of the rays.
+    /// Returns the corners relative to the common origin of the rays.
     #[inline(always)]
     fn relative_corners<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
         let [x, y, z] = self.axes.turned();
@@ -58,8 +59,8 @@ impl Packet<'_> {
         from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
     }
 
-    /// Tests the triangles of a leaf with some rays. The lanes hold either triangles or rays,
-    /// whichever is less work.
+    /// Tests the triangles of a leaf against some of the rays. The lanes hold either triangles or
+    /// rays, whichever takes less work.
     #[inline(always)]
     pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
         let (_, count) = node::items(leaf);
@@ -67,8 +68,8 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        // If few rays are left in the groups, or there are many triangles, test ray by ray. Tuned
-        // by measurement.
+        // If few rays are left in the groups, or if there are many triangles, test ray by ray. The
+        // condition was tuned by measurement.
         let hits = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true if self.has_common_origin => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
@@ -88,8 +89,8 @@ impl Packet<'_> {
         }
     }
 
-    /// Tests each triangle with sixteen rays at once. Returns a mask of the rays that hit one. With
-    /// `POINT`, corners relative to the common origin are computed once.
+    /// Tests each triangle against sixteen rays at once. Returns a mask of the rays that hit a
+    /// triangle. If `POINT` is true, corners relative to the common origin are computed only once.
     #[inline(always)]
     fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
@@ -110,7 +111,7 @@ impl Packet<'_> {
             let e = &mut self.sixteens[group];
             let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
             let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
-            // Run all tests first, so that none waits for the result of another.
+            // Run all tests first, so that none of them waits for the result of another.
             let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
             for (lane, masks) in masks.iter_mut().enumerate().take(count) {
                 let flat = flat::<_, POINT>(wide, triangles.triangle(wide, lane), origin, shear);
@@ -135,7 +136,7 @@ impl Packet<'_> {
                 let mut crossed = candidates & crossed;
                 let mut hits = 0;
                 if ANY {
-                    // Any-hit rays need no exact distance.
+                    // Any-hit rays do not need the exact distance.
                     hits = crossed
                         & wide.lt(wide.load(&e.heights[2]), lowest)
                         & wide.lt(highest, wide.load(&e.heights[3]));
@@ -162,7 +163,8 @@ impl Packet<'_> {
         all_hit
     }
 
-    /// Tests each ray with all triangles at once. Returns a mask of the rays that hit one.
+    /// Tests each ray against all triangles at once. Returns a mask of the rays that hit a
+    /// triangle.
     #[inline(always)]
     fn ray_by_ray<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let mut room = MaybeUninit::uninit();

@@ -1,16 +1,17 @@
-//! Packet traversal of coherent rays.
+//! Traverses the tree with packets of coherent rays.
 //!
 //! A packet holds up to 64 rays whose directions have the same signs and the same longest axis.
-//! Interval arithmetic tests the children of a node once for all rays. When a child is visited, its
-//! box is tested again with one ray per lane, and so are the triangles of a leaf. Triangle tests
-//! have the same rounding as for single rays, so the hits are the same.
+//! Interval arithmetic tests the children of a node once for all rays of the packet. When a child
+//! is visited, its box is tested again with one ray per lane, and the triangles of a leaf are
+//! tested in the same way. Triangle tests have the same rounding as for single rays, so the hits
+//! are the same.
 //!
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
 //! Eurographics 2001; Boulos, Wald, Shirley, *Geometric and Arithmetic Culling Methods for Entire
 //! Ray Packets*, University of Utah 2006.
 
-/// Minimum or maximum of a value over all rays of a packet. (A closure might not be inlined, and
-/// would then be compiled without the instructions of the SIMD level.)
+/// Returns the minimum or maximum of a value over all rays of a packet. (A closure might not be
+/// inlined, and it would then be compiled without the instructions of the SIMD level.)
 macro_rules! end {
     ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
         let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
@@ -36,18 +37,19 @@ use shared::{HitTriangle, PacketAxes};
 use std::cell::RefCell;
 use traverse::StackEntry;
 
-/// Minimum number of rays in a packet. Fewer rays are faster when traced one by one.
+/// Minimum number of rays in a packet. With fewer rays, tracing them one by one is faster.
 const MIN_SIZE: usize = 16;
-/// Maximum number of windows that are skipped after incoherent rays.
+/// Maximum number of windows that are skipped after a window of incoherent rays.
 const MAX_SKIPPED_WINDOWS: u32 = 15;
-/// Maximum spread of the directions of a packet across the longest axis, per unit along it.
+/// Maximum spread of the directions of a packet perpendicular to the longest axis, per unit along
+/// that axis.
 const MAX_DIRECTION_SPREAD: f32 = 0.5;
 /// Maximum spread of the origins, relative to the longest side of the tree's bounds.
 const MAX_ORIGIN_SPREAD: f32 = 0.25;
 
 impl TriangleBvh {
-    /// Traces coherent rays in packets, then passes the numbers of the other rays to `others`. With
-    /// `ANY`, the answer only tells if there is any hit.
+    /// Traces coherent rays in packets, and then passes the numbers of the other rays to `others`.
+    /// If `ANY` is true, the answer only says whether there is any hit.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
@@ -66,7 +68,7 @@ impl TriangleBvh {
     }
 }
 
-/// Buffers for packets that all batches of a thread reuse, since batches can be small.
+/// Buffers for packets. All batches of a thread reuse them because batches can be small.
 #[derive(Default)]
 struct Scratch {
     /// Numbers of the rays that are not traced in packets.
@@ -106,8 +108,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             limit: 0.0,
             packet_hits,
         };
-        // If rays are incoherent, or none is fast, the next ones are probably similar, so try
-        // packets less and less often.
+        // If the rays of a window are incoherent, or if none of them is fast, the following rays
+        // are probably similar. Packets are therefore tried less and less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
@@ -129,8 +131,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 }
             }
             let signs = packet.signs(lanes);
-            // Usually all rays have the same key and are already loaded. Otherwise, gather the rays
-            // of each key.
+            // Usually all rays have the same key and have already been loaded. Otherwise, collect
+            // the rays of each key.
             let mut left = all;
             while left != 0 {
                 let key = key_of(signs, left.trailing_zeros());
@@ -161,7 +163,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
     }
 }
 
-/// Key of a ray, from the masks of [`PacketRays::signs`].
+/// Returns the key of a ray, given the masks of [`PacketRays::signs`].
 #[inline(always)]
 fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
     let of = |set: u64| (set >> ray & 1) as usize;
@@ -169,7 +171,7 @@ fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
     of(x) | of(y) << 1 | of(z) << 2 | longest << 3
 }
 
-/// Mask of the rays with a key.
+/// Returns a mask of the rays with a key.
 #[inline(always)]
 fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
@@ -178,8 +180,8 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
 }
 
 impl Packet<'_> {
-    /// Loads the first `count` numbered rays and repeats the last one in unused lanes. If the rays
-    /// are consecutive, `in_order` holds them too.
+    /// Loads the first `count` rays whose numbers are given, and repeats the last one in unused
+    /// lanes. If the rays are consecutive, `in_order` holds them too.
     #[inline(always)]
     fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);
@@ -201,7 +203,7 @@ impl Packet<'_> {
         }
     }
 
-    /// Computes [`PacketRays::signs`] of all groups.
+    /// Computes [`PacketRays::signs`] for all groups.
     #[inline(always)]
     fn signs<L: Lanes>(&self, lanes: L) -> [u64; 5] {
         let mut signs = [0; 5];
@@ -213,7 +215,7 @@ impl Packet<'_> {
         signs
     }
 
-    /// Prepares rays with a common key. Returns true if they are coherent.
+    /// Prepares rays that have the same key. Returns true if they are coherent.
     #[inline(always)]
     fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
         self.axes = PacketAxes::of_key(key);
@@ -291,19 +293,19 @@ impl Packet<'_> {
         }
     }
 
-    /// Corners of the triangles that eight rays have hit, by corner and axis. `numbers` holds the
-    /// indices in the list of hits, as bits.
+    /// Returns the corners of the triangles that eight rays have hit, by corner and axis. `numbers`
+    /// holds the indices in the list of hits as bit patterns.
     #[inline(always)]
     fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
         let [first, ..] = *numbers;
-        // The triangles are often the same. Indices are compared as integers, since as floats they
-        // are subnormal.
+        // Often all of these triangles are the same. Indices are compared as integers because they
+        // would be subnormal as floats.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
         if lanes.signs(lanes.lt_as_int(all, one)) | lanes.signs(lanes.lt_as_int(one, all)) == 0 {
             let [a, b, c] = self.packet_hits[first.to_bits() as usize].corners;
             return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
         }
-        // Load eight of the nine coordinates of each triangle at once, then the last.
+        // For each triangle, load eight of the nine coordinates at once and then the last one.
         let (mut rows, mut lasts) = ([lanes.splat(0.0); WIDTH], [0.0; WIDTH]);
         for ((row, last), number) in rows.iter_mut().zip(&mut lasts).zip(numbers) {
             let [[a, b, c], [d, e, f], [g, h, i]] = self.packet_hits[number.to_bits() as usize].corners;

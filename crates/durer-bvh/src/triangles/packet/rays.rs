@@ -1,4 +1,4 @@
-//! The rays of a packet, sixteen at a time with one ray per lane.
+//! The rays of a packet in groups of sixteen, with one ray per lane.
 
 use super::shared::{HitTriangle, PacketAxes};
 use crate::lanes::{FloatLanes, Lanes, WIDE, WIDTH, WideLanes};
@@ -12,38 +12,38 @@ use glam::Vec3A;
 pub type PerRay = [f32; WIDE];
 
 /// Sixteen rays of a packet, one per lane, with the same octant and longest axis. They are prepared
-/// for box tests like [`TraversalRay`](crate::traverse::TraversalRay), with slightly less padding,
-/// and for triangle tests like [`WatertightRay`](crate::watertight::WatertightRay).
+/// for box tests as in [`TraversalRay`](crate::traverse::TraversalRay), with slightly less padding,
+/// and for triangle tests as in [`WatertightRay`](crate::watertight::WatertightRay).
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct PacketRays {
     pub origin: [PerRay; 3],
     pub dir: [PerRay; 3],
     pub inverse: [PerRay; 3],
-    /// Origins moved outwards by the padding of boxes.
+    /// Origins moved outwards by the padding of the boxes.
     pub near_from: [PerRay; 3],
     pub far_from: [PerRay; 3],
-    /// Padded origins times the inverse of the direction, negated.
+    /// Padded origins multiplied by the negated inverse of the direction.
     pub near_origin: [PerRay; 3],
     pub far_origin: [PerRay; 3],
     pub shear: [PerRay; 2],
-    /// 1 over the direction's component along the longest axis.
+    /// 1 divided by the component of the direction along the longest axis.
     inverse_z: [[f64; WIDTH]; 2],
     pub t_min: PerRay,
     pub t_max: PerRay,
-    /// `t` of the closest hit so far; `t_max` before the first hit.
+    /// `t` of the closest hit so far, or `t_max` before the first hit.
     pub t_last: PerRay,
-    /// Heights below the first or above the second bound are certainly outside the interval.
-    /// Heights above the third and below the fourth are certainly inside.
+    /// Heights below the first bound or above the second are certainly outside the interval.
+    /// Heights above the third bound and below the fourth are certainly inside.
     pub heights: [PerRay; 4],
-    /// Indices of the hit triangles in the packet's list, as bits; 0 for none. Meaningless for
-    /// any-hit rays.
+    /// Indices of the hit triangles in the packet's list, as bit patterns. The index 0 means no
+    /// hit. For any-hit rays, the indices are meaningless.
     packet_hits: PerRay,
 }
 
 impl PacketRays {
-    /// Sets eight of the rays, from `first` on. A row holds the origin, direction, and interval of
-    /// a ray.
+    /// Sets eight of the rays, starting at `first`. Each row holds the origin, direction, and
+    /// interval of a ray.
     #[inline(always)]
     pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
         let [x, y, z, u, v, w, t_min, t_max] = lanes.transpose(rays);
@@ -56,8 +56,8 @@ impl PacketRays {
         }
     }
 
-    /// Masks of the rays with negative directions along x, y, and z, and of those whose first or
-    /// second component is the longest.
+    /// Returns masks of the rays with negative directions along x, y, and z, and masks of the rays
+    /// whose first or second component is the longest.
     #[inline(always)]
     pub fn signs<L: Lanes>(&self, lanes: L) -> [u32; 5] {
         let wide = lanes.wide();
@@ -143,9 +143,9 @@ impl PacketRays {
         }
     }
 
-    /// Records triangle `number` of the packet's list as the closest hit of each ray in the mask
-    /// `crossed` that hits it within its interval and before any other triangle. Returns a mask of
-    /// these rays.
+    /// Records triangle `number` of the packet's list as the closest hit of some rays. These are
+    /// the rays in the mask `crossed` that hit it within their interval and before any other
+    /// triangle. Returns a mask of these rays.
     #[inline(always)]
     pub fn intersect_node<L: Lanes>(
         &mut self,
@@ -184,7 +184,7 @@ impl PacketRays {
             halves[half] = lanes.singles(line.t(&plane)[0]);
         }
         let (t, t_last) = (lanes.join(halves), wide.load(&self.t_last));
-        // Rejects NaN, too.
+        // The comparison also rejects NaN.
         let within = crossed & wide.lt(wide.load(&self.t_min), t) & wide.lt(t, wide.load(&self.t_max));
         let mut hits = within & wide.lt(t, t_last);
         let mut same = within & wide.le(t, t_last) & !hits;
@@ -199,8 +199,8 @@ impl PacketRays {
         hits
     }
 
-    /// Tests a single ray as [`PacketRays::intersect_node`] does, with a triangle that is appended
-    /// to the list if it is hit.
+    /// Tests a single ray as [`PacketRays::intersect_node`] does. The triangle is appended to the
+    /// list if the ray hits it.
     #[inline(always)]
     pub fn intersect_one(
         &mut self,
@@ -222,7 +222,7 @@ impl PacketRays {
         hits
     }
 
-    /// Barycentric coordinates of the hits of half of the rays.
+    /// Returns the barycentric coordinates of the hits for half of the rays.
     #[inline(always)]
     pub fn uv<L: Lanes>(
         &self,
@@ -250,13 +250,14 @@ impl PacketRays {
         [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
     }
 
-    /// Indices of the triangles that half of the rays have hit, as bits.
+    /// Returns the indices of the triangles that half of the rays have hit, as bit patterns.
     #[inline(always)]
     pub fn packet_hits(&self, half: usize) -> &[f32; WIDTH] {
         part(&self.packet_hits, half)
     }
 
-    /// Mask of the rays that cross a triangle with permuted axes, by the exact test.
+    /// Returns a mask of the rays that cross a triangle with permuted axes, according to the exact
+    /// test.
     #[cold]
     #[inline(never)]
     pub fn crossing(&self, mut rays: u32, corners: [Vec3A; 3]) -> u32 {
@@ -276,7 +277,7 @@ impl PacketRays {
     }
 }
 
-/// First or second half of the values.
+/// Returns the first or second half of the values.
 #[inline(always)]
 fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
     match numbers[WIDTH * half..].first_chunk() {
@@ -285,10 +286,10 @@ fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
     }
 }
 
-/// Upper bound on the rounding error of heights.
+/// Returns an upper bound on the rounding error of heights.
 #[inline(always)]
 fn slack<W: WideLanes>(wide: W, height: W::Floats) -> W::Floats {
     let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));
-    // Infinity minus infinity is NaN.
+    // Infinity minus infinity would be NaN.
     wide.min(slack, wide.splat(f32::MAX))
 }

@@ -1,43 +1,43 @@
-//! Axes and hit triangles of a packet.
+//! Axes of a packet and triangles that it has hit.
 
 use crate::watertight::{AxisOrder, Plane, axis_order_for};
 use glam::Vec3A;
 
-/// Axis order and direction signs that all rays of a packet have in common.
+/// Axis order and direction signs that are common to all rays of a packet.
 #[derive(Clone, Copy)]
 pub struct PacketAxes {
     /// Axis order, as in [`WatertightRay`](crate::watertight::WatertightRay).
     pub turn: AxisOrder,
-    /// 1 for axes along which directions are negative, else 0.
+    /// 1 for axes along which directions are negative, and 0 for the others.
     pub negative: [usize; 3],
 }
 
 impl PacketAxes {
-    /// Decodes a key of signs and longest axis.
+    /// Decodes a key, which combines signs and the longest axis.
     pub fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
         PacketAxes { turn: axis_order_for(longest, negative[longest]), negative }
     }
 
-    /// Indices of the first, second, and third axis of permuted vectors.
+    /// Returns the indices of the first, second, and third axis of permuted vectors.
     #[inline(always)]
     pub fn turned(&self) -> [usize; 3] {
         let [x, y, z, _] = self.turn;
         [x as usize, y as usize, z as usize]
     }
 
-    /// Returns true if directions are negative along their longest axis.
+    /// Returns true if the directions are negative along their longest axis.
     #[inline(always)]
     pub fn is_down(&self) -> bool {
         self.negative[self.turned()[2]] == 1
     }
 }
 
-/// A triangle that at least one ray of a packet has hit, prepared for computing t and barycentric
+/// A triangle that at least one ray of a packet has hit, prepared for computing `t` and barycentric
 /// coordinates.
 pub struct HitTriangle {
-    /// Corners with permuted axes.
+    /// Corners of the triangle, with the axes permuted.
     pub corners: [[f32; 3]; 3],
     pub triangle: u32,
     pub plane: Plane<[f64; 3]>,

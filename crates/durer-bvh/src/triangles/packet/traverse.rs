@@ -1,4 +1,4 @@
-//! Traversal of the tree by a packet.
+//! Traverses the tree with a packet.
 
 use super::bundle::Packet;
 use super::rays::PacketRays;
@@ -7,19 +7,19 @@ use crate::node::{self, LEAF, SLOT_BITS, WideNode};
 use crate::traverse::extreme_bit;
 use crate::triangles::fetch::{PrefetchAddresses, SIBLING_LINES};
 
-/// Entry of the stack in a packet traversal: a node or leaf to visit, and the rays to test.
+/// Stack entry of a packet traversal: a node or leaf to visit, and the rays to test against it.
 #[derive(Clone, Copy)]
 pub struct StackEntry {
     /// Mask of the rays that hit the parent.
     rays: u64,
     child: u32,
-    /// Location of the child's box: the sum of the parent's offset and the slot.
+    /// Location of the child's box, which is the sum of the parent's offset and the slot.
     box_at: u32,
     near: f32,
 }
 
-/// Intervals that contain all rays of a packet, for testing the children of a node once for all
-/// rays.
+/// Intervals that contain the values of all rays of a packet, for testing the children of a node
+/// once for all rays.
 struct IntervalRay<L: Lanes> {
     inverse: [[L::Floats; 2]; 3],
     near_from: [L::Floats; 3],
@@ -29,9 +29,10 @@ struct IntervalRay<L: Lanes> {
 }
 
 impl<L: Lanes> IntervalRay<L> {
-    /// Mask of the children that any ray may hit, and lower bounds of their entry distances.
+    /// Returns a mask of the children that any ray may hit, and lower bounds of their entry
+    /// distances.
     ///
-    /// Rounding is monotonic, so the intervals contain the results of all single rays.
+    /// Rounding is monotonic, so the intervals contain the results of all individual rays.
     #[inline(always)]
     fn intersect_node(&self, lanes: L, node: &WideNode, limit: L::Floats) -> (u32, L::Floats) {
         macro_rules! slab {
@@ -49,8 +50,8 @@ impl<L: Lanes> IntervalRay<L> {
         (lanes.le(enter, leave), enter)
     }
 
-    /// Lower bound of all entry distances: 0, or, if `t_min` is negative, the least entry distance
-    /// of the root's children.
+    /// Returns a lower bound of all entry distances. This is 0, or the smallest entry distance of
+    /// the root's children if `t_min` is negative.
     #[inline(always)]
     fn start(&self, lanes: L, root: &WideNode, limit: f32) -> f32 {
         if lanes.store(self.t_min)[0] >= 0.0 {
@@ -62,9 +63,9 @@ impl<L: Lanes> IntervalRay<L> {
     }
 }
 
-/// Slot of the hit child with the least entry distance. No entry distance is below `start`. (The
-/// order of the node is not used, since it follows a single axis: along other axes, rays would
-/// visit far children before near ones.)
+/// Returns the slot of the hit child with the smallest entry distance. No entry distance is below
+/// `start`. (The order of the node is not used because it follows a single axis. Along other axes,
+/// rays would visit far children before near ones.)
 #[inline(always)]
 fn nearest<L: Lanes>(lanes: L, node: &WideNode, hits: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
@@ -111,16 +112,17 @@ impl Packet<'_> {
         intervals
     }
 
-    /// Maximum `t` of all rays.
+    /// Returns the maximum `t` of all rays.
     #[inline(always)]
     pub(super) fn last<L: Lanes>(&self, lanes: L) -> f32 {
         let wide = lanes.wide();
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Tests the rays against the triangles of all leaves that they may hit, roughly from near to
-    /// far: first the nearest child of each node, then the others in node order. With `ANY`,
-    /// children are visited in the order for any-hit rays.
+    /// Tests the rays against the triangles of all leaves that they may hit, in approximately
+    /// front-to-back order. The nearest child of each node comes first, followed by the other
+    /// children in node order. If `ANY` is true, children are visited in the order for any-hit
+    /// rays.
     #[inline(always)]
     pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<StackEntry>) {
         let bvh = self.bvh;
@@ -142,7 +144,7 @@ impl Packet<'_> {
                         true => extreme_bit(hits, from_last),
                         false => nearest(lanes, node, hits, enter, start),
                     };
-                    // Push the child that is visited last first.
+                    // The child that is visited last is pushed first.
                     let (mut others, enter) = (hits ^ 1 << next, lanes.store(enter));
                     while others != 0 {
                         let place = extreme_bit(others, !from_last);
@@ -179,7 +181,7 @@ impl Packet<'_> {
         }
     }
 
-    /// Mask of the rays that hit the box of a child.
+    /// Returns a mask of the rays that hit the box of a child.
     #[inline(always)]
     fn inside<L: Lanes>(&self, lanes: L, node: &WideNode, place: usize, rays: u64) -> u64 {
         let wide = lanes.wide();
@@ -217,8 +219,8 @@ mod tests {
     use crate::lanes::{AvailableLevel, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
-    /// Kernel that calls [`nearest`] for a node, the entry distances of its children, a mask of the
-    /// hit children, and a lower bound of the distances.
+    /// Kernel that calls [`nearest`] for a node, given the entry distances of its children, a mask
+    /// of the hit children, and a lower bound of the distances.
     struct Nearest<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
     impl Kernel for Nearest<'_> {

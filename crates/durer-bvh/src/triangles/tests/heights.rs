@@ -1,11 +1,11 @@
-//! Tests of trees over height grids against trees over the same triangles, and against brute force.
+//! Tests trees over height grids against trees over the same triangles and against brute force.
 
 use super::*;
 use crate::BuildError;
 use std::sync::Arc;
 
-/// A height grid, and a mesh of the same triangles plus one below each pair of neighbouring border
-/// points.
+/// Returns a height grid, and a mesh with the same triangles plus one triangle below each pair of
+/// neighbouring border points.
 fn landscape(random: &mut Random, [columns, rows]: [usize; 2], scale: f32, offset: Vec3) -> (Arc<HeightGrid>, Mesh) {
     let line = |axis: usize, i: usize, count: usize| offset[axis] + scale * (2.0 * i as f32 / (count - 1) as f32 - 1.0);
     let heights = (0..columns * rows).map(|_| offset.y + scale * random.between(-0.3, 0.3)).collect();

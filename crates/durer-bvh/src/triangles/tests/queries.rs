@@ -1,16 +1,16 @@
-//! Tests of filters, sides, corners, and batches against brute force.
+//! Tests filters, sides, corners, and batches against brute force.
 
 use super::*;
 use crate::{BuildError, Facing};
 
-/// Hits found without a tree, with their sides by the normal in double precision; `None` if
-/// edge-on.
+/// Hits found without a tree, each with the side determined by the normal in double precision, or
+/// `None` if the triangle is edge-on.
 fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
     let side = |hit: &TriangleHit| {
         let [a, b, c] = mesh.1[hit.triangle as usize].map(|i| mesh.0[i as usize].as_dvec3());
         let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
         let cosine = normal.dot(dir) / (normal.length() * dir.length());
-        // If the triangle is nearly edge-on, double precision cannot decide.
+        // If the triangle is nearly edge-on, double precision is not enough to determine the side.
         (cosine.abs() > 1e-6).then_some(if cosine < 0.0 { Facing::Front } else { Facing::Back })
     };
     brute_force(mesh, ray).into_iter().map(|hit| (hit, side(&hit))).collect()
@@ -27,13 +27,13 @@ fn sides_and_filters_match_brute_force() {
                 let ray = ray(&mesh, &mut random, 1.0, Vec3::ZERO);
                 let expected = with_sides(&mesh, &ray);
                 let sides = |hit: &TriangleHit| expected.iter().find(|(other, _)| other.triangle == hit.triangle);
-                // Sides agree with the normals.
+                // The sides must agree with the normals.
                 bvh.occluded_where(&ray, |hit, facing| {
                     let side = sides(hit).unwrap_or_else(|| panic!("{hit:?} {ray:?}")).1;
                     assert!(side.is_none_or(|side| side == facing), "{hit:?} {ray:?}");
                     false
                 });
-                // Two of three triangles pass.
+                // The filter accepts two of three triangles.
                 let keep = |hit: &TriangleHit| !(hit.triangle as usize + round).is_multiple_of(3);
                 let first = expected.iter().map(|(hit, _)| hit).find(|hit| keep(hit));
                 let found = bvh.closest_where(&ray, |hit, _| keep(hit));
@@ -53,7 +53,7 @@ fn sides_and_filters_match_brute_force() {
 fn sides_of_a_closed_mesh_alternate() {
     let mut random = Random(22);
     for mesh in [torus(40, 20), cube(8)] {
-        // The signed volume is negative if fronts face inwards.
+        // The signed volume is negative if the front sides face inwards.
         let volume = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| mesh.0[i as usize]);
             a.dot(b.cross(c))
@@ -71,8 +71,8 @@ fn sides_of_a_closed_mesh_alternate() {
             });
             sides.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             sides.dedup();
-            // The ray alternately enters and leaves the mesh. The order of crossings that nearly
-            // coincide, for example at an edge, is not determined.
+            // The ray alternately enters and leaves the mesh. If several crossings nearly coincide,
+            // for example at an edge, their order is not determined.
             let mut depth = 0;
             for (i, side) in sides.iter().enumerate() {
                 depth += if side.2 == sides_in { 1 } else { -1 };

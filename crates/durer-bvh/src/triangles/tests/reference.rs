@@ -1,4 +1,4 @@
-//! Tests of the trees against an independent triangle test in double precision.
+//! Tests the trees against an independent triangle test in double precision.
 
 use super::*;
 use crate::math::random::rounds;
@@ -6,18 +6,19 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
-/// Result of the reference test of a ray and a triangle in double precision.
+/// Result of the double-precision reference test of a ray against a triangle.
 enum Verdict {
-    /// Crossed at `t`, with the tolerance of `t`.
+    /// The ray crosses the triangle at `t`, with a tolerance for `t`.
     Crossed(f64, f64),
     Missed,
-    /// The ray passes or starts too close to an edge for single precision.
+    /// The ray passes or starts too close to an edge for single precision to decide.
     Unsure,
 }
 
-/// Tests the signs of the volumes that the ray spans with each edge. The rounding error of a
-/// corner's coordinates is proportional to its distance from the origin of the ray. The error of a
-/// volume is that error times the area spanned by the ray and the other corner.
+/// Computes the reference result from the signs of the volumes that the ray spans with each edge.
+/// The rounding error of a corner's coordinates is proportional to its distance from the origin of
+/// the ray. The error of a volume is that error times the area spanned by the ray and the other
+/// corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
@@ -41,7 +42,8 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     if sides.contains(&0.0) || !t.is_finite() || (t * d.length()).abs() < 1e-3 * reach {
         return Verdict::Unsure;
     }
-    // One rounding to single precision, plus the loss of double precision for a grazing ray.
+    // The tolerance covers one rounding to single precision, plus the loss of accuracy in double
+    // precision for a grazing ray.
     let loss = 1e-14 * n.length() * (reach + t.abs() * d.length()) / volume.abs();
     match t > 0.0 {
         true => Verdict::Crossed(t, t * f64::from(f32::EPSILON) + loss),
@@ -49,7 +51,7 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     }
 }
 
-/// Twelve meshes of a few hundred triangles.
+/// Twelve meshes with a few hundred triangles each.
 fn dozen() -> Vec<(&'static str, Mesh)> {
     let mut random = Random(21);
     let apart = |vertices: Vec<Vec3>| {
@@ -92,7 +94,7 @@ fn dozen() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-/// Numbers of crossed triangles, and of those too close to an edge to decide.
+/// Number of crossed triangles, and number of triangles that are too close to an edge to decide.
 #[derive(Default, Debug)]
 struct EdgeCounts {
     crossed: usize,
@@ -106,7 +108,7 @@ impl AddAssign for EdgeCounts {
     }
 }
 
-/// Tests random rays around a mesh: all hits and the closest.
+/// Tests random rays around a mesh, both for all hits and for the closest hit.
 fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> EdgeCounts {
     let (vertices, triangles) = mesh;
     let tree = TriangleBvh::build(vertices, triangles, BuildQuality::Best);
@@ -135,7 +137,7 @@ fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> EdgeCounts {
     tried
 }
 
-/// Tests 10^5 rays per mesh; 10^7 in the long run.
+/// Tests 10^5 rays per mesh, or 10^7 in the long run.
 #[test]
 fn double_precision_reference_agrees() {
     const AT_ONCE: usize = 10_000;

@@ -16,23 +16,25 @@ use durer_scene::shape::MeshData;
 use normals::InvalidNormals;
 use topology::Topology;
 
-/// Size in bytes above which a mesh file is skipped, so that the checks stay interactive.
+/// Size in bytes above which a mesh file is skipped so that the checks remain interactive.
 const MAX_BYTES: usize = 64 << 20;
-/// Fraction of reversed triangles or triangles with wrong normals that is ignored; modelling
+/// Fraction of reversed triangles or triangles with wrong normals that is ignored because modelling
 /// programs often leave a few.
 const NEGLIGIBLE: f32 = 0.002;
 
-/// A mesh file of the checked scene with its topology, its odd normals and the objects that use it.
+/// A mesh file of the checked scene, with its topology, its irregular normals and the objects that
+/// use it.
 #[derive(Debug)]
 pub(in crate::check) struct MeshFile<'s> {
     pub(super) name: &'s FileName,
-    /// Index of the file in the scene's [`Files`](durer_diag::Files); `u32::MAX` for a mesh of a
+    /// Index of the file in the scene's [`Files`](durer_diag::Files), or `u32::MAX` for a mesh of a
     /// model.
     pub(super) file: u32,
     pub(super) objects: Vec<&'s Object>,
     pub(super) data: MeshData,
     pub(super) topology: Topology,
-    /// Triangles whose file normals are wrong; `None` if the dialect ignores normals in files.
+    /// Triangles whose normals in the file are wrong, or `None` if the dialect ignores normals in
+    /// files.
     pub(super) odd_normals: Option<InvalidNormals>,
 }
 
@@ -45,7 +47,7 @@ pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
 }
 
-/// Maximum number of triangles of a mesh in a model for it to be checked.
+/// Maximum number of triangles for which a mesh in a model is checked.
 const MAX_MODEL: usize = 300_000;
 
 /// Returns the meshes of a scene that was read from a model file.
@@ -86,7 +88,7 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
     let files = grid.input.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
     let bytes = files.complete_bytes(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
-    // The loader has already reported the file's errors.
+    // The loader has already reported errors in the file.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     Some(MeshFile::new(grid, name, file, objects, data))
 }
@@ -100,13 +102,13 @@ impl<'s> MeshFile<'s> {
 }
 
 impl MeshFile<'_> {
-    /// Returns true if a number of bad triangles is too small a fraction of the mesh to report.
+    /// Returns true if the bad triangles are too small a fraction of the mesh to be reported.
     pub(super) fn is_negligible(&self, count: usize) -> bool {
         count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
     }
 
-    /// Returns the line in an OBJ file of the face that a triangle belongs to. A face of n vertices
-    /// has n - 2 triangles.
+    /// Returns the line in an OBJ file that contains the face to which a triangle belongs. A face
+    /// with n vertices has n - 2 triangles.
     pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
         let bytes = grid.input.files.bytes(self.file)?;
         let (mut start, mut before, mut found) = (0, 0, None);
@@ -125,7 +127,8 @@ impl MeshFile<'_> {
         found.filter(|_| before == self.data.triangles.len())
     }
 
-    /// Places a warning about triangles at the first of them, or where the scene names the file.
+    /// Places a warning about triangles at the first of them, or at the place where the scene names
+    /// the file.
     pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
         match self.face(grid, triangle) {
@@ -166,7 +169,8 @@ impl MeshFile<'_> {
         self.compiled_objects(grid).filter_map(CompiledObject::bounds).any(|bounds| bounds.contains(eye))
     }
 
-    /// Returns true if the mesh is the inner wall of a hollow glass object and so faces inwards.
+    /// Returns true if the mesh is the inner wall of a hollow glass object and therefore faces
+    /// inwards.
     pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
         let objects = grid.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.contains(inner.min) && outer.contains(inner.max);

@@ -1,4 +1,4 @@
-//! Checks of the vertex normals stored in a mesh file.
+//! Checks the vertex normals that are stored in a mesh file.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
@@ -7,18 +7,18 @@ use durer_scene::shape::mesh::NO_INDEX;
 /// winding.
 #[derive(Debug, Default)]
 pub(in crate::check) struct InvalidNormals {
-    /// Triangles whose normals oppose their winding.
+    /// Triangles whose normals are opposed to their winding.
     pub opposed: Vec<u32>,
-    /// Triangles without normals in a file where others have some.
+    /// Triangles without normals in a file in which other triangles have normals.
     pub missing: Vec<u32>,
-    /// Triangles with a normal of length zero.
+    /// Triangles with at least one normal of length zero.
     pub zero: Vec<u32>,
     /// Number of triangles with normals.
     pub count: usize,
 }
 
 impl InvalidNormals {
-    /// Examines the normals of a mesh as stored in its file; `None` if it has none.
+    /// Examines the normals of a mesh as stored in its file. Returns `None` if it has none.
     pub fn of(data: &MeshData) -> Option<InvalidNormals> {
         let mut odd_normals = InvalidNormals::default();
         for (i, triangle) in data.triangles.iter().enumerate() {
@@ -41,7 +41,7 @@ impl InvalidNormals {
         (odd_normals.count > 0).then_some(odd_normals)
     }
 
-    /// Returns true if the normals of nearly all triangles oppose their winding.
+    /// Returns true if the normals of nearly all triangles are opposed to their winding.
     pub fn is_against_all(&self) -> bool {
         self.opposed.len() * 10 > self.count * 9
     }

@@ -1,4 +1,4 @@
-//! Connectivity of triangles: edges, orientation, volume.
+//! Connectivity of triangles: edges, orientation, and volume.
 
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::mesh::position_key;
@@ -6,35 +6,36 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// Connectivity of a mesh for the checks: open edges, reversed triangles and enclosed volume.
-/// Vertices at the same position count as one.
+/// Vertices at the same position count as one vertex.
 #[derive(Debug, Default)]
 pub(in crate::check) struct Topology {
     /// Triangles with zero area.
     pub degenerate: Vec<u32>,
-    /// Number of edges with one triangle (`open`), and with more than two (`non_manifold`).
+    /// Number of edges that belong to one triangle (`open`), and number of edges that belong to
+    /// more than two (`non_manifold`).
     pub open: usize,
     pub non_manifold: usize,
-    /// Any such edge.
+    /// One of these edges.
     pub some_edge: Option<[Vec3; 2]>,
-    /// Triangles whose winding is opposite to that of most triangles in their connected piece.
+    /// Triangles whose winding is opposite to that of most triangles in the same connected piece.
     pub reversed: Vec<u32>,
     /// Number of edges, and volume of the bounding box.
     pub edges: usize,
     pub box_volume: f64,
-    /// Length of the sum of all area vectors, divided by the sum of their lengths; 0 for a closed
-    /// surface.
+    /// Length of the sum of all area vectors, divided by the sum of their lengths. It is 0 for a
+    /// closed surface.
     pub area_vector_sum: f64,
     /// Six times the signed enclosed volume, relative to the centre of the bounds if the mesh is
-    /// open. Negative if triangles are clockwise seen from outside.
+    /// open. It is negative if triangles are clockwise when seen from outside.
     pub volume: f64,
 }
 
-/// An edge of a triangle: key of its two vertices, smaller index first; true if the triangle runs
-/// along it in that order; index of the triangle.
+/// An edge of a triangle: the key of its two vertices with the smaller index first, true if the
+/// triangle runs along it in that order, and the index of the triangle.
 type Edge = (u64, bool, u32);
 
 impl Topology {
-    /// Computes the topology of triangles.
+    /// Computes the topology of a list of triangles.
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let mut topology = Topology::default();
         let vertex = merged_vertices(positions);
@@ -48,7 +49,7 @@ impl Topology {
             let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - anchor);
             topology.volume += a.dot(b.cross(c));
             let longest = (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared());
-            // The vertices are collinear, up to rounding.
+            // The vertices are collinear up to rounding errors.
             let normal = (b - a).cross(c - a);
             (sum, area) = (sum + normal, area + normal.length());
             if normal.length() <= 1e-9 * longest {
@@ -76,8 +77,8 @@ impl Topology {
     }
 
     /// Returns true if the surface is closed except for a small hole, for example the top of a
-    /// vase: its rims are short, its area vectors nearly sum to 0, and its volume is a fair share
-    /// of its bounds.
+    /// vase. Then its rims are short, its area vectors nearly sum to 0, and its volume is a large
+    /// enough fraction of its bounds.
     pub fn is_nearly_closed(&self) -> bool {
         let short = self.non_manifold == 0 && self.open * 10 < self.edges;
         self.is_closed() || short && self.area_vector_sum < 0.25 && self.volume.abs() > 0.1 * self.box_volume
@@ -89,15 +90,15 @@ impl Topology {
     }
 }
 
-/// Returns for each vertex the index of the first vertex at the same position.
+/// Returns, for each vertex, the index of the first vertex at the same position.
 fn merged_vertices(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     positions.iter().enumerate().map(|(i, p)| *first.entry(position_key(*p)).or_insert(i as u32)).collect()
 }
 
-/// Returns the reversed triangles. Flood-fills across edges with two triangles: if both run along
-/// their edge in the same direction, their windings differ. In each connected piece the minority
-/// counts as reversed.
+/// Returns the reversed triangles. The search flood-fills across edges that belong to two
+/// triangles. If both triangles run along their common edge in the same direction, their windings
+/// differ. In each connected piece, the minority counts as reversed.
 fn reversed_triangles(edges: &[Edge], count: usize) -> Vec<u32> {
     let pairs = || edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
     if pairs().all(|same| same[0].1 != same[1].1) {

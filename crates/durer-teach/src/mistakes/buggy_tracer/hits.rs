@@ -9,7 +9,7 @@ use durer_scene::shape::Primitive;
 use smallvec::SmallVec;
 
 impl BuggyTracer<'_> {
-    /// Returns the selected hit, and the `t` that the tracer computes for it.
+    /// Returns the selected hit and the `t` that the tracer computes for it.
     pub(super) fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
         if self.bugs.local_unit {
             let mut whole = *ray;
@@ -63,14 +63,14 @@ impl BuggyTracer<'_> {
         if self.bugs.hit_choice != HitChoice::MovedDirection || object.to_world.is_none() {
             return *ray;
         }
-        // The wrong M^-1 (d, 1) equals M^-1 (d - t, 0), where t is the translation of M.
+        // The wrong M^-1 (d, 1) is equal to M^-1 (d - t, 0), where t is the translation of M.
         let by = object.world_point(-object.center);
         let mut own = *ray;
         own.rounded.dir -= by;
         own
     }
 
-    /// Returns the hit of the nearest object. For a mesh it is the hit with the smallest key.
+    /// Returns the hit of the nearest object. For a mesh, this is the hit with the smallest key.
     fn of_meshes(&self, ray: &Ray64, key: impl Fn(&Hit) -> u32) -> Option<Hit> {
         let mut best: SmallVec<[Hit; 16]> = SmallVec::new();
         for hit in self.faces(ray) {
@@ -104,7 +104,8 @@ impl BuggyTracer<'_> {
         Some(Hit { t, uv: Vec2::ZERO, object, part: 0 })
     }
 
-    /// Iterates over the nearest hit of each object; meshes contribute all their hits.
+    /// Iterates over the nearest hit of each object. For a mesh, the iteration includes all of its
+    /// hits.
     fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {

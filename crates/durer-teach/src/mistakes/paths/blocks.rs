@@ -1,4 +1,4 @@
-//! Means of a path-traced picture over blocks of pixels, with the variance due to noise.
+//! Means of a path-traced picture over blocks of pixels, with their variances due to noise.
 
 use super::walker::BuggyPathTracer;
 use crate::mistakes::path_bugs::PixelMean;
@@ -13,10 +13,10 @@ const BLOCKS: u32 = 20;
 const MAX_PATHS: u32 = 150_000;
 /// Maximum number of samples per pixel.
 const MAX_SAMPLES: u32 = 64;
-/// Variance due to rounding to eight bits.
+/// Variance caused by rounding to eight bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
-/// Grid of square blocks over a picture, with the pixels of each block that are rendered and
+/// Grid of square blocks over a picture. It stores the pixels in each block that are rendered and
 /// compared.
 pub struct Blocks {
     /// Selected pixels of each block.
@@ -31,7 +31,7 @@ pub struct BlockMeans {
 }
 
 impl Blocks {
-    /// Divides a picture into blocks and selects pixels, so that the number of paths is limited.
+    /// Divides a picture into blocks and selects pixels so that the number of paths is limited.
     pub fn new(width: u32, height: u32, samples: u32) -> Self {
         let side = (width.max(height)).div_ceil(BLOCKS).max(2);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
@@ -47,7 +47,7 @@ impl Blocks {
         Blocks { pixels: (0..columns * rows).map(block).collect() }
     }
 
-    /// Returns the means of a finished picture; the variance includes only rounding.
+    /// Returns the block means of a finished picture. Their variance includes only rounding.
     pub fn of_picture(&self, width: u32, values: &[Vec3]) -> BlockMeans {
         let mean = |block: &Vec<(u32, u32)>| {
             let sum: Vec3 = block.iter().map(|&(x, y)| values[(y * width + x) as usize]).sum();
@@ -83,7 +83,8 @@ impl Blocks {
             let count = all.len().max(1) as f32;
             let mean = all.iter().sum::<Color>() / weights.max(1e-6);
             let value = if variant.paths.pixel_mean == PixelMean::Shown { mean } else { exposed(mean) };
-            // The standard error of the mean is converted to display values by a finite difference.
+            // The standard error of the mean is converted to display values by means of a finite
+            // difference.
             let spread = all.iter().map(|light| (*light * count / weights.max(1e-6) - mean).length_squared());
             let error = (spread.sum::<f32>() / (count * (count - 1.0).max(1.0))).sqrt();
             let step = Color::splat(error / 3.0_f32.sqrt());
@@ -102,7 +103,7 @@ impl Blocks {
 }
 
 impl BlockMeans {
-    /// Returns `other` with its variance increased by `ratio` times the variance of `self`.
+    /// Returns `other`, with its variance increased by `ratio` times the variance of `self`.
     pub fn with_noise_of(&self, mut other: BlockMeans, ratio: f64) -> BlockMeans {
         for (own, other) in self.variance.iter().zip(&mut other.variance) {
             *other += ratio * own;
@@ -110,8 +111,8 @@ impl BlockMeans {
         other
     }
 
-    /// Returns the squared difference of each block in excess of noise, and true if it is
-    /// significant. `noise` is the variance of the difference of each block.
+    /// Returns, for each block, the squared difference beyond noise, and true if it is significant.
+    /// `noise` is the variance of the difference for each block.
     pub fn excess_difference(&self, other: &BlockMeans, noise: &[f64]) -> Vec<(f64, bool)> {
         let pairs = self.mean.iter().zip(&other.mean).zip(noise);
         pairs
@@ -123,8 +124,8 @@ impl BlockMeans {
     }
 }
 
-/// Ratio of the squared difference to the noise variance above which a difference is significant;
-/// about 3.5 standard errors.
+/// Ratio of the squared difference to the noise variance above which a difference is significant.
+/// It corresponds to about 3.5 standard errors.
 const MIN_SIGNIFICANCE: f64 = 12.0;
-/// Squared difference that is invisible even without noise.
+/// Squared difference that is invisible even if there is no noise.
 const INVISIBLE: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);

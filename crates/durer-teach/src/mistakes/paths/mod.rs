@@ -1,8 +1,8 @@
-//! Mistakes of path tracers: a simple path tracer that makes them, and a search for the mistake
-//! that explains a picture.
+//! Mistakes of path tracers. The module contains a simple path tracer that makes them and a search
+//! for the mistake that explains a picture.
 //!
-//! Path-traced pictures are noisy, so pixels are not compared directly. The search compares means
-//! over blocks, whose variance is known.
+//! Path-traced pictures are noisy, so their pixels are not compared directly. The search compares
+//! means over blocks because their variance is known.
 
 mod blocks;
 mod search;

@@ -8,13 +8,14 @@ use crate::mistakes::table::{Formulas, Mistake};
 use crate::mistakes::variant::SceneVariant;
 use durer_scene::math::Vec3;
 
-/// Maximum share of blocks in which the reference may differ significantly from the rendered scene.
-/// Above it, no mistakes are tried.
+/// Maximum fraction of blocks in which the reference may differ significantly from the rendered
+/// scene. If the fraction is larger, no mistakes are tried.
 const MAX_DIFFERENCE: f64 = 0.15;
-/// Minimum share of differing blocks; fewer are attributed to noise.
+/// Minimum fraction of differing blocks. If fewer blocks differ, the difference is attributed to
+/// noise.
 const MIN_DIFFERENCE: f64 = 0.02;
-/// Minimum fit of an explanation: share of the squared difference, and share of the differing
-/// blocks.
+/// Minimum quality of an explanation, as a fraction of the squared difference and as a fraction of
+/// the differing blocks.
 const MIN_EXPLAINED: f64 = 0.95;
 const MIN_MATCHED: f64 = 0.9;
 /// An explanation is a rival if its residual is at most this many times the residual of the best
@@ -23,7 +24,8 @@ const RIVAL_RATIO: f64 = 3.0;
 /// Ratio of variances above which one picture counts as noisier than the other.
 const NOISE_RATIO: f64 = 1.5;
 
-/// One mistake with its value, its rendered block means, and how well those match the test picture.
+/// One mistake with its value, the block means rendered with it, and how well those match the test
+/// picture.
 struct Trial {
     mistake: (&'static Mistake, f32),
     rendered: BlockMeans,
@@ -31,7 +33,7 @@ struct Trial {
     matched: f64,
 }
 
-/// Returns the share of the blocks in which a render of the scene differs from the reference by
+/// Returns the fraction of the blocks in which a render of the scene differs from the reference by
 /// more than noise.
 pub fn off(input: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepare(input);
@@ -45,7 +47,7 @@ fn blocks(input: &DiagnosisInput) -> Blocks {
     Blocks::new(input.job.width, input.job.height, input.job.sampling.samples())
 }
 
-/// Returns the variance of the difference of two pictures, for each block.
+/// Returns, for each block, the variance of the difference between two pictures.
 fn noise(a: &BlockMeans, b: &BlockMeans) -> Vec<f64> {
     a.variance.iter().zip(&b.variance).map(|(a, b)| a + b).collect()
 }
@@ -116,8 +118,8 @@ fn trials(
     all.into_iter().enumerate().map(trial).collect()
 }
 
-/// Returns the mistakes that explain the picture; none if no mistake fits or if the choice is
-/// ambiguous.
+/// Returns the mistakes that explain the picture. There are none if no mistake fits or if the
+/// choice is ambiguous.
 fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let passes = |trial: &&Trial| trial.explained >= MIN_EXPLAINED && trial.matched >= MIN_MATCHED;
@@ -125,7 +127,7 @@ fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
     let rest = |trial: &Trial| 1.0 - trial.explained;
     let rivals: Vec<&Trial> =
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL_RATIO * rest(best) + 0.005).collect();
-    // If rivals have different pictures, naming one of them would be a guess.
+    // If rivals produce different pictures, naming one of them would be a guess.
     let alike = |other: &Trial| {
         let noise: Vec<f64> = noise(&best.rendered, test);
         best.rendered.excess_difference(&other.rendered, &noise).iter().filter(|block| block.1).count() * 20
@@ -144,8 +146,8 @@ fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
 
 /// Estimates the noise variance of a picture relative to that of the reference.
 fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
-    // Second differences along rows vanish for smooth shading. Drop the largest quarter, which
-    // contains the edges.
+    // Second differences along rows are zero for smooth shading. Drop the largest quarter of the
+    // values, which contains the edges.
     let energy = |pixels: &[Vec3]| {
         let mut all: Vec<f32> = pixels
             .chunks(width)

@@ -1,9 +1,9 @@
-//! The table of mistakes of path tracers.
+//! The table of the mistakes that path tracers can make.
 
 use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean};
 use crate::mistakes::table::{Mistake, Values, row};
 
-/// Common mistakes of path tracers; [`diagnose`](super::search::diagnose) tries all of them.
+/// Common mistakes in path tracers. [`diagnose`](super::search::diagnose) tries all of them.
 pub const MISTAKES: &[Mistake] = &[
     row(
         "path-depth",

@@ -1,6 +1,6 @@
-//! A simple path tracer with optional mistakes. It combines light and BSDF sampling with the power
-//! heuristic. It uses the renderer's surfaces, BSDFs and emitters, and for scenes without fog it
-//! has the same expected value as the renderer's path tracer.
+//! A simple path tracer with optional mistakes. The path tracer combines light and BSDF sampling
+//! with the power heuristic. It uses the renderer's surfaces, BSDFs and emitters. For scenes
+//! without fog, it has the same expected value as the renderer's path tracer.
 
 use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs};
 use crate::mistakes::variant::SceneVariant;
@@ -24,7 +24,7 @@ impl SplitMix {
         numbers
     }
 
-    /// Returns a uniform number in [0, 1). Source: Steele, Lea and Flood, *Fast Splittable
+    /// Returns a uniform random number in [0, 1). Source: Steele, Lea and Flood, *Fast Splittable
     /// Pseudorandom Number Generators*, OOPSLA 2014.
     fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -71,7 +71,7 @@ impl<'w> BuggyPathTracer<'w> {
         let (world, lanes) = (self.world, &self.lanes);
         let mut media = MediumStack::around(world, ray.rounded.origin);
         let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-        // The last vertex whose scattered direction has a finite pdf, and that pdf.
+        // The last vertex whose scattered direction has a finite pdf, together with that pdf.
         let mut last: Option<(Receiver, f32)> = None;
         let mut from_eye = true;
         let (mut depth, mut layers) = (0, 0);
@@ -173,7 +173,7 @@ impl<'w> BuggyPathTracer<'w> {
         weight * self.lanes.light(color)
     }
 
-    /// Returns the contribution of one light sample, including BSDF and cosine.
+    /// Returns the contribution of one light sample, including the BSDF and the cosine.
     fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut SplitMix) -> Spectrum {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
@@ -249,7 +249,7 @@ impl<'w> BuggyPathTracer<'w> {
         }
     }
 
-    /// Applies mistakes in the cosine and in 1/π to a value of BSDF times cosine.
+    /// Applies the mistakes in the cosine and in 1/π to a product of BSDF and cosine.
     fn with_cosine_bugs(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
         let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
         let value = match self.bugs.cosine_power {
@@ -295,7 +295,7 @@ impl<'w> BuggyPathTracer<'w> {
     }
 }
 
-/// Returns the weight of the power heuristic for a sample with pdf `a`.
+/// Returns the weight that the power heuristic gives to a sample with pdf `a`.
 fn power(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

@@ -209,7 +209,8 @@ fn tan(degrees: f32) -> f32 {
     fp::tan_f64(f64::from(degrees).to_radians()) as f32
 }
 
-/// Scales the picture of a perspective camera by a factor that depends on its field of view.
+/// Scales the picture of a perspective camera by a factor that depends on the camera's field of
+/// view.
 fn scale(v: &mut super::SceneVariant, factor: impl Fn(f32) -> f32) {
     if let Some(angle) = v.angle() {
         v.camera_bugs.scale *= factor(angle);

@@ -524,13 +524,14 @@ fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
     [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
 }
 
-/// Returns the product of a transform's matrices without those that `left_out` selects.
+/// Returns the product of a transform's matrices without the matrices that `left_out` selects.
 fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
     let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
     MatrixOp::product(&kept, rules)
 }
 
-/// Returns the product of a transform's matrices with rotation angles changed by `change`.
+/// Returns the product of a transform's matrices after `change` has been applied to the rotation
+/// angles.
 fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
     let change = |op: &MatrixOp| match *op {
         MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),

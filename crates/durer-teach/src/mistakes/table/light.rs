@@ -1,4 +1,4 @@
-//! Mistakes in local light: ambient and diffuse terms, lights, and their sum.
+//! Mistakes in local light, which consists of ambient and diffuse terms, lights, and their sum.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Ambient, Attenuation, Cosine, LightSum, PointLightDirection};
@@ -133,7 +133,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for (i = 0; i < numLights; i++)",
         "only light {}",
         |v, light| {
-            // With a single light this changes nothing.
+            // If there is a single light, this mistake changes nothing.
             v.world.edit().lights = v.world.lights().get(light as usize).cloned().into_iter().collect();
         },
     )
@@ -292,7 +292,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 4 => |a| Vec3::new(a.x, a.y, 0.0),
                 _ => |a| Vec3::new(0.0, a.y, 0.0),
             };
-            // A single falloff coefficient has its own rows.
+            // A single falloff coefficient has table rows of its own.
             if v.has_three_factors() {
                 points(v.world.edit().lights.iter_mut(), |a| a.map(change));
             }

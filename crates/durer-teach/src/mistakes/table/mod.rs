@@ -1,5 +1,5 @@
-//! The table of common mistakes, with one file per family. If several mistakes give the same
-//! picture, the first in the table is reported.
+//! The table of common mistakes, with one file for each family. If several mistakes produce the
+//! same picture, the first one in the table is reported.
 
 mod bounces;
 mod camera;
@@ -15,23 +15,23 @@ use durer_scene::dialect::{DialectRules, Falloff, Highlight};
 use durer_scene::scene::Scene;
 
 /// A mistake that is common in student programs, with its description, its code, and a function
-/// that makes it.
+/// that applies it.
 #[derive(Clone, Copy, Debug)]
 pub struct Mistake {
     /// Stable name of the mistake.
     pub name: &'static str,
-    /// Description, without a full stop. `{}` stands for the value; `{a|b|c}` selects an
-    /// alternative by the value, from 0.
+    /// Description without a full stop at the end. `{}` stands for the value, and `{a|b|c}` selects
+    /// an alternative by the value, counted from 0.
     pub description: &'static str,
     /// The correct code.
     pub right: &'static str,
-    /// The probable wrong code.
+    /// The code that is probably wrong in the student's program.
     pub wrong: &'static str,
-    /// Name of the lesson topic about it.
+    /// Name of the lesson topic that covers the mistake.
     pub step: &'static str,
-    /// Values with which the mistake is tried.
+    /// Values with which the search tries the mistake.
     pub values: Values,
-    /// Applies the mistake with a value to a variant of the scene.
+    /// Applies the mistake, with a value, to a variant of the scene.
     pub apply: fn(&mut SceneVariant, f32),
 }
 
@@ -40,11 +40,11 @@ pub struct Mistake {
 pub enum Values {
     /// The mistake has no value.
     One,
-    /// These values, between which the search fits the true value.
+    /// The mistake has these values, and the search fits the true value between them.
     Numbers(&'static [f32]),
-    /// Exactly these values.
+    /// The mistake has exactly these values.
     Only(&'static [f32]),
-    /// The index of each light, counted from 0.
+    /// The mistake has the index of each light as a value, counted from 0.
     Lights,
 }
 
@@ -60,7 +60,7 @@ impl Values {
     }
 }
 
-/// The mistakes of Whitted's method, by family.
+/// The mistakes of Whitted's method, grouped by family.
 pub const MISTAKES: [&[Mistake]; 7] = [
     light::MISTAKES,
     highlights::MISTAKES,
@@ -76,7 +76,7 @@ pub fn mistake_by_name(name: &str) -> Option<&'static Mistake> {
     MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
 }
 
-/// Builds a row without values to try.
+/// Builds a table row without values to try.
 pub(in crate::mistakes) const fn row(
     name: &'static str,
     step: &'static str,
@@ -94,17 +94,17 @@ impl Mistake {
         Mistake { values, ..self }
     }
 
-    /// Returns true if a value was fitted, so it is not one of the listed values.
+    /// Returns true if a value was fitted and is therefore not one of the listed values.
     pub fn is_fitted(&self, value: f32) -> bool {
         matches!(self.values, Values::Numbers(numbers) if !numbers.contains(&value))
     }
 
-    /// Returns the description with a value filled in.
+    /// Returns the description with a value inserted.
     pub fn describe(&self, value: f32) -> String {
         fill_in(self.description, value)
     }
 
-    /// Returns the correct code and the probable wrong code, in the formulas of a scene.
+    /// Returns the correct code and the probable wrong code, with the formulas of a scene.
     pub fn code(&self, value: f32, formulas: &Formulas) -> [String; 2] {
         let messages =
             |form| fill_in(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
@@ -112,10 +112,11 @@ impl Mistake {
     }
 }
 
-/// Attenuation polynomial in the code of the table.
+/// Attenuation polynomial as it appears in the code of the table.
 const ATTENUATION: &str = "a0 + a1 d + a2 d^2";
 
-/// Attenuation and highlight formulas of a scene's dialect, inserted into the code of mistakes.
+/// Attenuation and highlight formulas of a scene's dialect, which are inserted into the code of
+/// mistakes.
 #[derive(Clone, Copy, Debug)]
 pub struct Formulas {
     fading: &'static str,
@@ -141,7 +142,7 @@ impl Formulas {
     }
 }
 
-/// Inserts a value into a text, and resolves each `{a|b|c}`.
+/// Inserts a value into a text and replaces each `{a|b|c}` by the selected alternative.
 fn fill_in(words: &str, value: f32) -> String {
     let mut text = String::new();
     let mut rest = words;

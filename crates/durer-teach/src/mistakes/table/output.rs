@@ -4,7 +4,7 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{OutputBug, PixelOrder};
 
-/// Usual gamma exponents; 0 stands for the sRGB curve.
+/// Usual gamma exponents, where 0 stands for the sRGB curve.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
 
 /// Common mistakes in writing the picture to a file.
