@@ -18,8 +18,8 @@ pub fn pixel_limit(bytes: usize) -> u64 {
     (bytes as u64).saturating_mul(PIXELS_PER_BYTE).saturating_add(FREE_PIXELS).min(MAX_PIXELS)
 }
 
-/// Returns the number of pixels in a picture whose header states this size, if this number is allowed
-/// for a file of `bytes` bytes.
+/// Returns the number of pixels in a picture whose header states this size, if this number is
+/// allowed for a file of `bytes` bytes.
 pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<usize, ImageError> {
     match width.checked_mul(height) {
         Some(count) if count <= pixel_limit(bytes) && count > 0 => Ok(count as usize),

@@ -131,7 +131,8 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         self.values.skip(property.number_type, count).map_err(|error| self.fail(error, element, row))
     }
 
-    /// Reads the length of a list and checks that this many values can fit into the rest of the file.
+    /// Reads the length of a list and checks that this many values can fit into the rest of the
+    /// file.
     pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, ErrorReported> {
         let Some(scalar) = property.length_type else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;

@@ -405,8 +405,8 @@ pub enum TermKind {
         /// Share of the material in the mixture at this point.
         share: f32,
     },
-    /// Light from one light source. The scale is the arriving light, by which diffuse + highlight is
-    /// multiplied, and the factor is share · visibility.
+    /// Light from one light source. The scale is the arriving light, by which diffuse + highlight
+    /// is multiplied, and the factor is share · visibility.
     Light {
         /// Index of the light in the scene.
         light: usize,

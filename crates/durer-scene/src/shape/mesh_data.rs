@@ -30,8 +30,8 @@ pub struct MeshData {
     /// Three normal indices for each triangle, or [`NO_INDEX`]. The list is empty if no triangle
     /// has normals.
     pub triangle_normals: Vec<[u32; 3]>,
-    /// Three original vertices for each triangle, or an empty list unless [`MeshData::separate_and_enlarge`] was
-    /// called.
+    /// Three original vertices for each triangle, or an empty list unless
+    /// [`MeshData::separate_and_enlarge`] was called.
     pub vertices: Vec<[u32; 3]>,
     /// Linear red, green, blue and opacity for each position. The list is empty if no vertex has a
     /// colour.
