@@ -23,7 +23,7 @@ const BYTES_PER_TEXEL: u64 = 4 * size_of::<Color>() as u64;
 ///
 /// # Errors
 ///
-/// Returns [`ImageError::Memory`] if this needs more than `allowed` bytes of memory.
+/// Returns [`ImageError::MemoryLimit`] if this needs more than `allowed` bytes of memory.
 pub(super) fn set_environment(
     scene: &mut Scene,
     (name, span): (&str, Span),

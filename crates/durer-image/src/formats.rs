@@ -140,7 +140,7 @@ impl Format {
     /// render.
     ///
     /// # Errors
-    /// Returns [`ImageError::Size`] or [`ImageError::Unsupported`] if the picture cannot be
+    /// Returns [`ImageError::InvalidSize`] or [`ImageError::Unsupported`] if the picture cannot be
     /// written.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), ImageError> {
         limits::checked_count(width, height)?;
@@ -167,7 +167,7 @@ impl Format {
     /// # Errors
     /// Returns [`ImageError::NoLayer`] if there is no layer, [`ImageError::SeveralLayers`] if the
     /// format can hold only one, [`ImageError::LayerSizes`] if the sizes differ,
-    /// [`ImageError::Size`] if a size is invalid, and [`ImageError::Unsupported`] if the format
+    /// [`ImageError::InvalidSize`] if a size is invalid, and [`ImageError::Unsupported`] if the format
     /// cannot hold a size or name.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;

@@ -48,7 +48,7 @@ pub fn can_allocate(bytes: u64) -> bool {
 /// Returns the number of pixels in a picture, if its size is valid.
 ///
 /// # Errors
-/// [`ImageError::Size`].
+/// [`ImageError::InvalidSize`].
 pub fn checked_count(width: u32, height: u32) -> Result<usize, ImageError> {
     match u64::from(width) * u64::from(height) {
         count @ 1..=MAX_PIXELS => Ok(count as usize),

@@ -21,7 +21,7 @@ impl<'a> Encoded<'a> {
     /// # Errors
     /// Returns [`ImageError::Unrecognised`], [`ImageError::Malformed`],
     /// [`ImageError::Unsupported`], [`ImageError::TooLarge`] if there are more than
-    /// [`pixel_limit`](super::pixel_limit) pixels, or [`ImageError::Size`] for a picture without
+    /// [`pixel_limit`](super::pixel_limit) pixels, or [`ImageError::InvalidSize`] for a picture without
     /// pixels.
     pub fn open(bytes: &'a [u8], name_hint: &str) -> Result<Self, ImageError> {
         let format = recognise(bytes, name_hint)?;
@@ -62,7 +62,7 @@ impl<'a> Encoded<'a> {
     /// Decodes the values of an 8-bit file.
     ///
     /// # Errors
-    /// Returns [`ImageError::NotEightBit`], [`ImageError::Memory`] if decoding needs more than
+    /// Returns [`ImageError::NotEightBit`], [`ImageError::MemoryLimit`] if decoding needs more than
     /// `memory` bytes, or the errors of [`Encoded::open`].
     pub fn read8(&self, memory: u64) -> Result<Image8, ImageError> {
         if !self.head.is_eight_bit {
@@ -77,7 +77,7 @@ impl<'a> Encoded<'a> {
     /// Decodes the values as they are stored in the file.
     ///
     /// # Errors
-    /// Returns [`ImageError::Memory`] if decoding needs more than `memory` bytes, or the errors of
+    /// Returns [`ImageError::MemoryLimit`] if decoding needs more than `memory` bytes, or the errors of
     /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
         self.decode(self.memory_needed_raster(), memory)

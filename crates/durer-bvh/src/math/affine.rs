@@ -129,7 +129,7 @@ impl Affine {
     }
 
     /// Given a bound on the absolute components of a vector, returns a bound after applying the
-    /// inverse map; see [`Affine::spread`].
+    /// inverse map; see [`Affine::error_bound`].
     #[inline]
     pub fn inverse_error_bound(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()

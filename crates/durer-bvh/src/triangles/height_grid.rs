@@ -11,7 +11,7 @@ const SIDE: usize = 2;
 const _: () = assert!(2 * SIDE * SIDE == LEAF_SIZE);
 
 /// A height field such as terrain. It stores heights y at the crossings of grid lines with constant
-/// x and z, and a [`TriangleBvh`] computes triangles from it.
+/// x and z, and a [`TriangleBvh`](super::TriangleBvh) computes triangles from it.
 ///
 /// Crossings and cells are numbered along x first. A cell lies between four crossings and has two
 /// triangles. Let a be the crossing at the lower x and z, b the one at the next z, c the one at the

@@ -2,8 +2,8 @@
 //!
 //! [`RenderJob`] contains the options that are set. The options are defined in a single place,
 //! [`RenderJob::OPTIONS`]. The command line, the text that reproduces a job
-//! ([`RenderJob::spelled`]), JSON and Python use these definitions. [`RenderJob::resolve`] turns
-//! the options into a [`Job`], with defaults from the scene.
+//! ([`RenderJob::to_arguments`]), JSON and Python use these definitions. [`RenderJob::resolve`]
+//! turns the options into a [`Job`], with defaults from the scene.
 
 mod option_form;
 
