@@ -185,7 +185,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
     }
     let mut sums = vec![Sums::default(); points.len()];
-    // Photons are traced anew for every sample.
+    // Photons are traced again for every sample.
     let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Phase of the program. It determines how the program reacts to a signal such as Ctrl-C.
 enum Phase {
-    /// Nothing has been written yet, so the signal ends the program.
+    /// No output exists yet, so the signal ends the program.
     BeforeWriting,
     /// The program is waiting for changes, so the signal ends it without an error.
     Idle,

@@ -64,7 +64,7 @@ fn grid_picture_replaces_the_colour_picture() {
     folder.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
     folder.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
     let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| folder.bytes(name));
-    // If no number of cells is given, the program chooses one. Here it chooses a single cell, as in
+    // Without a number of cells, the program chooses one. Here it chooses a single cell, as in
     // the first run.
     assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
     assert!(folder.bytes("d.tga") != pictures[0]);

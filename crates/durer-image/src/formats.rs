@@ -167,8 +167,8 @@ impl Format {
     /// # Errors
     /// Returns [`ImageError::NoLayer`] if there is no layer, [`ImageError::SeveralLayers`] if the
     /// format can hold only one, [`ImageError::LayerSizes`] if the sizes differ,
-    /// [`ImageError::InvalidSize`] if a size is invalid, and [`ImageError::Unsupported`] if the format
-    /// cannot hold a size or name.
+    /// [`ImageError::InvalidSize`] if a size is invalid, and [`ImageError::Unsupported`] if the
+    /// format cannot hold a size or name.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;
         if layers.len() > 1 && !self.supports_layers {

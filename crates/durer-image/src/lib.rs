@@ -99,7 +99,8 @@ impl Image {
     /// Creates a picture that has a single colour.
     ///
     /// # Errors
-    /// Returns [`ImageError::InvalidSize`] if a side is 0 or there are more than [`MAX_PIXELS`] pixels.
+    /// Returns [`ImageError::InvalidSize`] if a side is 0 or there are more than [`MAX_PIXELS`]
+    /// pixels.
     pub fn new(width: u32, height: u32, color: Color) -> Result<Image, ImageError> {
         let count = limits::checked_count(width, height)?;
         Ok(Image { width, height, pixels: vec![color; count] })
@@ -108,8 +109,8 @@ impl Image {
     /// Creates a picture from its pixels, starting with the top row.
     ///
     /// # Errors
-    /// Returns [`ImageError::InvalidSize`] if a side is 0, there are too many pixels, or the number of
-    /// pixels is not `width * height`.
+    /// Returns [`ImageError::InvalidSize`] if a side is 0, there are too many pixels, or the number
+    /// of pixels is not `width * height`.
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<Vec3>) -> Result<Image, ImageError> {
         let image = Image { width, height, pixels };
         image.check()?;

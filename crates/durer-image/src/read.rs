@@ -21,8 +21,8 @@ impl<'a> Encoded<'a> {
     /// # Errors
     /// Returns [`ImageError::Unrecognised`], [`ImageError::Malformed`],
     /// [`ImageError::Unsupported`], [`ImageError::TooLarge`] if there are more than
-    /// [`pixel_limit`](super::pixel_limit) pixels, or [`ImageError::InvalidSize`] for a picture without
-    /// pixels.
+    /// [`pixel_limit`](super::pixel_limit) pixels, or [`ImageError::InvalidSize`] for a picture
+    /// without pixels.
     pub fn open(bytes: &'a [u8], name_hint: &str) -> Result<Self, ImageError> {
         let format = recognise(bytes, name_hint)?;
         let head = format.head(bytes)?;
@@ -77,8 +77,8 @@ impl<'a> Encoded<'a> {
     /// Decodes the values as they are stored in the file.
     ///
     /// # Errors
-    /// Returns [`ImageError::MemoryLimit`] if decoding needs more than `memory` bytes, or the errors of
-    /// [`Encoded::open`].
+    /// Returns [`ImageError::MemoryLimit`] if decoding needs more than `memory` bytes, or the
+    /// errors of [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
         self.decode(self.memory_needed_raster(), memory)
     }

@@ -55,8 +55,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// True if every number in the value is finite. Always true for paths and words, which contain
-    /// no numbers.
+    /// True if every number in the value is finite. Always true for paths and words.
     pub fn is_finite(&self) -> bool {
         match self {
             Value::Float(x) => x.is_finite(),

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 /// Number of rows that is assumed for a photograph of unknown size.
 const DEFAULT_HEIGHT: f64 = 1000.0;
 
-/// Those parts of a glTF file's JSON that are read.
+/// Parts of a glTF file's JSON that are read.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 struct File {

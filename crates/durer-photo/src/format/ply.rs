@@ -35,7 +35,7 @@ enum Encoding {
     Big,
 }
 
-/// Those parts of a PLY file's header that are needed to read the points.
+/// Parts of a PLY file's header that are needed to read the points.
 struct Header {
     encoding: Encoding,
     /// Number of points.
