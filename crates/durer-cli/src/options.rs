@@ -106,7 +106,7 @@ pub struct WorkArgs {
     /// Discard unfinished saved work and start again
     #[arg(long, conflicts_with_all = ["resume", "no_checkpoint"])]
     pub restart: bool,
-    /// File for unfinished work [default: PICTURE.part, written after the first second]
+    /// Checkpoint file, from which --resume continues [default: PICTURE.part]
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     pub checkpoint: Option<PathBuf>,
     /// Time between saves of unfinished work

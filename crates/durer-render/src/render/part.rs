@@ -227,7 +227,7 @@ impl PartialRender {
     }
 
     /// Returns the amounts of total and finished work, in samples and centre rays. With a noise
-    /// threshold, the work can end earlier.
+    /// threshold, the render can finish before all of it is done.
     pub fn work(&self) -> (u64, u64) {
         let range = self.shard.range(self.job.sampling.samples());
         let (mut all, mut done) = (0, 0);

@@ -263,7 +263,8 @@ pub enum Fresnel {
 /// Mistakes in the direction and attenuation of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightBugs {
-    /// The L of directional lights is the direction from the file instead of its negative.
+    /// L of a directional light is the direction written in the file; it should be the opposite
+    /// direction.
     pub negated: bool,
     /// The L of all lights has the wrong sign, also for shadow rays.
     pub all_negated: bool,
