@@ -16,7 +16,11 @@ describe("a zoom", () => {
     expect((at.y - once.y) * once.magnification).toBeCloseTo(at.y - 0.5, 12);
     expect(zoomBy(once, 0.01, { x: 0, y: 0 }, 100)).toEqual(whole);
     expect(zoomBy(whole, 1000, at, 32).magnification).toBe(32);
-    expect(clampZoom({ x: -3, y: 9, magnification: 4 }, 100)).toEqual({ x: 0.125, y: 0.875, times: 4 });
+    expect(clampZoom({ x: -3, y: 9, magnification: 4 }, 100)).toEqual({
+      x: 0.125,
+      y: 0.875,
+      magnification: 4,
+    });
   });
 
   it("renders what is seen, and all of it until much less is seen", () => {
