@@ -43,7 +43,7 @@ ways to sample lights, caustics and spectra, if they occur in the scene.")]
 pub struct LessonArgs {
     /// Scene file, or a lesson in Markdown
     pub scene: PathBuf,
-    /// Folder to write [default: the scene's name with -lesson, in the current folder]
+    /// Output folder [default: the scene's name followed by -lesson, in the current folder]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     #[command(flatten)]

@@ -72,7 +72,8 @@ fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
         true => guess.note(),
         false => {
             let (dialect, other) = (dialect.name(), guess.dialect.name());
-            Diagnostic::note(format!("read as {dialect}: the picture of {other} has NaN samples")).code("dialect")
+            Diagnostic::note(format!("read as {dialect}, because the picture under {other} has NaN samples"))
+                .code("dialect")
         }
     }
 }

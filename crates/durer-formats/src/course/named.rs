@@ -42,8 +42,9 @@ impl Reader<'_, '_> {
         let number = self.named.materials.get(&name).copied();
         if number.is_none() {
             let near = did_you_mean(&name, self.named.materials.keys().map(String::as_str)).map(str::to_string);
-            let error =
-                Diagnostic::error(format!("no material `{name}` is defined before this")).code("unknown-word").at(span);
+            let error = Diagnostic::error(format!("no material `{name}` is defined before this point"))
+                .code("unknown-word")
+                .at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
                 None => {
@@ -114,8 +115,9 @@ impl Reader<'_, '_> {
         }
         let Some((object, count, _)) = self.named.objects.get(&name) else {
             let near = did_you_mean(&name, self.named.objects.keys().map(String::as_str)).map(str::to_string);
-            let error =
-                Diagnostic::error(format!("nothing is defined as `{name}` before this")).code("unknown-word").at(span);
+            let error = Diagnostic::error(format!("nothing is defined as `{name}` before this point"))
+                .code("unknown-word")
+                .at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
                 None => error.help("write `define NAME` and an object first, outside the object that uses it"),

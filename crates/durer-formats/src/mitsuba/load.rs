@@ -271,7 +271,7 @@ impl<'a> Loader<'a> {
             Some(plugin) => self.register(other, other_at, plugin),
             None => {
                 let help = suggest(&id, self.plugins.keys().map(String::as_str));
-                self.report.error_with_help(at, format!("no plugin has the id `{id}` before this"), help);
+                self.report.error_with_help(at, format!("no plugin has the id `{id}` before this point"), help);
             }
         }
     }

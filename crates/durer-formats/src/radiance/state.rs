@@ -268,7 +268,11 @@ impl<'a> Reader<'a> {
         if number.is_none() {
             let help = suggest(&name.text, self.names.keys().map(String::as_str));
             let help = help.or_else(|| Some("files with materials must precede the files that use them".into()));
-            self.report.error_with_help(name.at, format!("no modifier {} is defined before this", name.quoted()), help);
+            self.report.error_with_help(
+                name.at,
+                format!("no modifier {} is defined before this point", name.quoted()),
+                help,
+            );
         }
         number.map(Some)
     }

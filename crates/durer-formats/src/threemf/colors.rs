@@ -115,7 +115,7 @@ impl Parser<'_, '_> {
         let (base, indices) = (self.integer(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
         if let (Some(base), None) = (base, known) {
-            self.report.error(tag.at, format!("no base material list {base} is defined before this"));
+            self.report.error(tag.at, format!("no base material list {base} is defined before this point"));
         }
         let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
         if known.is_some() && parts.len() < indices.len() {
@@ -143,7 +143,7 @@ impl Parser<'_, '_> {
     fn multiproperties(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
-            self.report.error(tag.at, format!("no property list {missing} is defined before this"));
+            self.report.error(tag.at, format!("no property list {missing} is defined before this point"));
         }
         if pids
             .iter()

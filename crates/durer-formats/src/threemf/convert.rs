@@ -159,7 +159,7 @@ impl SceneMaker<'_> {
                 },
                 Some((None, _)) => {
                     let list = mesh.default_property.map_or(0, |default| default.0);
-                    self.report.error(at, format!("no property list {list} is defined before this"));
+                    self.report.error(at, format!("no property list {list} is defined before this point"));
                     return Vec::new();
                 }
                 None => skin(None),

@@ -83,7 +83,7 @@ impl Parser<'_, '_> {
         };
         let Some(count) = self.model.count(pid) else {
             let at = tag.get("pid").map_or(tag.at, |attribute| attribute.at);
-            self.report.error(at, format!("no property list {pid} is defined before this"));
+            self.report.error(at, format!("no property list {pid} is defined before this point"));
             return None;
         };
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];

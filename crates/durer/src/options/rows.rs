@@ -68,8 +68,8 @@ pub(super) const LOADING: &[Row] = &[
         "memory",
         OptionForm::Value("SIZE"),
         |options, text| Ok(options.memory = Memory::parse(text)?),
-        "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the least of \
-         the machine's memory, the limits of the control groups, and `ulimit -v` [default: 80%]",
+        "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the available \
+         memory, which control groups and `ulimit -v` can limit [default: 80%]",
     ),
     row(
         "accel",

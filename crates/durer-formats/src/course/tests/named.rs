@@ -64,11 +64,11 @@ fn wrong_names_are_errors() {
     for (text, expected) in [
         (
             "Group { MaterialIndex rad Sphere { center 0 0 0 radius 1 } }",
-            "3:23 error: no material `rad` is defined before this [rad] (did you mean `red`?)",
+            "3:23 error: no material `rad` is defined before this point [rad] (did you mean `red`?)",
         ),
         (
             "Group { use ball }",
-            "3:13 error: nothing is defined as `ball` before this [ball] (write `define NAME` and an object first, outside the object that uses it)",
+            "3:13 error: nothing is defined as `ball` before this point [ball] (write `define NAME` and an object first, outside the object that uses it)",
         ),
         ("define a Sphere { center 0 0 0 radius 1 } define a use a", "3:50 error: `a` is defined already [a]"),
         (
@@ -79,7 +79,7 @@ fn wrong_names_are_errors() {
         // Cycles are impossible because an object cannot be used inside its own definition.
         (
             "define a Group { use a }",
-            "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
+            "3:22 error: nothing is defined as `a` before this point [a] (write `define NAME` and an object first, outside the object that uses it)",
         ),
         ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
         ("include", "3:1 error: `include` needs the name of a file [include] (for example `include light.txt`)"),

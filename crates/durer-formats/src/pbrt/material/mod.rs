@@ -141,7 +141,7 @@ impl Reader<'_> {
         let index = self.named_materials.get(name).copied();
         if index.is_none() {
             let help = suggest(name, self.named_materials.keys().map(String::as_str));
-            self.report.error_with_help(at, format!("no material `{name}` is defined before this"), help);
+            self.report.error_with_help(at, format!("no material `{name}` is defined before this point"), help);
         }
         index
     }

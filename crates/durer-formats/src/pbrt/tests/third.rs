@@ -207,7 +207,7 @@ fn errors_and_warnings_of_pbrt_v3() {
     for (text, wanted) in [
         ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)"),
         ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this is a pbrt-v4 material"),
-        ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this"),
+        ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this point"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
         ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error the file `no.exr` does not exist"),
         ("LightSource \"projection\" \"float fov\" 180", "error a field of view must be more than 0 and less than 180"),
