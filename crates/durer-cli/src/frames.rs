@@ -13,9 +13,9 @@ use std::sync::Arc;
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Animation")]
 pub struct FramesArgs {
-    /// Frames to render: 7, 1-100, or 0-90:10 for every tenth frame. The frame number replaces %d or
-    /// %04d in SCENE, PICTURE, --camera and --view-file. If only PICTURE contains one of them, each
-    /// frame is a time in the model's animation
+    /// Frames to render: 7, 1-100, or 0-90:10 for every tenth frame. The frame number replaces %d
+    /// or %04d in SCENE, PICTURE, --camera and --view-file. If only PICTURE contains one of them,
+    /// each frame is a time in the model's animation
     #[arg(long, value_name = "FRAMES")]
     pub frames: Option<Frames>,
     /// Frames per second of the model's animation

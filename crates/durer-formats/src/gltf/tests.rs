@@ -1,5 +1,4 @@
-//! Tests that compare with the reports of the Khronos glTF validator, and tests of accessors and of
-//! damaged files.
+//! Tests against reports of the Khronos glTF validator, and of accessors and damaged files.
 
 use crate::folder::FolderSource;
 use crate::scene::{ReadInput, find_scene_format, read_model};
@@ -17,8 +16,7 @@ use std::path::{Path, PathBuf};
 mod places;
 mod vertices;
 
-/// Reads bytes as a file in a folder, and returns the diagnostics with their severity, code and
-/// message.
+/// Reads bytes as a file in a folder. Returns the severity, code and message of each diagnostic.
 fn read(
     bytes: &[u8],
     folder: &Path,
@@ -74,8 +72,7 @@ fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Errors that the validator reports but Dürer accepts. Each entry has the code, a part of the
-/// path, and the reason.
+/// Errors that the validator reports but Dürer accepts: code, part of the path, and reason.
 const SURVIVED: &[(&str, &str, &str)] = &[
     ("", "/animation", "animations are read only if a time is requested"),
     ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are computed from the data; declared bounds are ignored"),
@@ -360,8 +357,7 @@ fn specular_extension_applies_to_dielectrics_only() {
     assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
 }
 
-/// At normal incidence, the reflectance is 0.04 times the weight and the colour. At grazing angles,
-/// the reflectance is 1.
+/// The reflectance is 0.04 times weight and colour at normal incidence, and 1 at grazing angles.
 #[test]
 fn specular_color_brightness_becomes_the_weight() {
     let of = |weight: f32, color: &str| {
@@ -456,8 +452,7 @@ fn joints_morph_targets_and_key_frames_move_vertices() {
     assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
-/// Returns the number of triangles of all meshes, their bounds and their total area, in world
-/// space.
+/// Returns the number of triangles of all meshes, and their bounds and area in world space.
 fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
     let path = root.join(name);
     let file = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -580,7 +575,6 @@ fn variant_is_selected_by_name_or_number() {
 #[test]
 fn errors_count_if_diagnostics_are_full() {
     let lost = r#"{"asset":{"version":"2.0"},"nodes":[{"children":[7]}],"scenes":[{"nodes":[0]}]}"#;
-    // The list of diagnostics is already full.
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     (0..100).for_each(|_| diagnostics.push(durer_diag::Diagnostic::error("before")));
     let file = files.add("a.gltf", lost.as_bytes().into());

@@ -57,8 +57,7 @@ pub struct Resources<'a> {
     pub sky_optional: bool,
     /// Memory limit for meshes and pictures, in bytes.
     pub memory: u64,
-    /// Expected number of camera rays, or `u64::MAX` if unknown. For few rays, the BVH is built
-    /// faster.
+    /// Expected number of camera rays, or `u64::MAX` if unknown. Few rays get a faster BVH build.
     pub rays: u64,
     /// Cache of meshes and pictures from earlier compilations.
     pub cache: Option<&'a AssetCache>,
@@ -148,8 +147,7 @@ pub fn compile(
             *emitter = emitter.with_flux(profile);
         }
     }
-    // Serialization fails only for numbers that are not finite, and valid scenes and rules contain
-    // none.
+    // Serialization fails only for non-finite numbers, which a valid scene does not contain.
     let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
@@ -247,13 +245,11 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
 
 /// Maximum number of other objects for which a linear search is faster than a tree.
 const MAX_LINEAR_OBJECTS: usize = 2;
-/// Maximum total cost of simple shapes for which a linear search is faster than a tree. The unit is
-/// the cost of one sphere test. Simple shapes are tested in groups of eight, or one shape is tested
-/// against eight rays.
+/// Maximum total cost of simple shapes for which a linear search is faster than a tree, in sphere
+/// tests. Simple shapes are tested eight at a time, or one shape against eight rays.
 const MAX_LINEAR_COST: usize = 16;
 
-/// Minimum number of simple shapes for which testing them in groups of eight is faster than testing
-/// them one by one.
+/// Minimum number of simple shapes for which tests in groups of eight are faster.
 const MIN_PACKED: usize = 4;
 
 /// Builds the structure for the objects with the given bounds. The bounds of an unbounded object
@@ -403,8 +399,7 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
                 scene.background.ambient_light,
             ),
         };
-        // The scenes of the first assignments intentionally have no lights and an ambient light of
-        // 1 1 1.
+        // Scenes of the first assignments have no lights, and their ambient light is 1 1 1.
         let intended = scene.background.ambient_light == Color::ONE;
         let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
@@ -455,8 +450,7 @@ struct SceneFlattener<'a, 'r> {
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
-/// Returns true if scenes of the dialect consist of nodes. The wording of help texts depends on
-/// this.
+/// Returns true if scenes of the dialect consist of nodes, which changes the help texts.
 fn is_nodes(rules: &DialectRules) -> bool {
     rules.name == Dialect::F23.name()
 }
@@ -485,8 +479,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Adds an object and everything inside it. `to_world` is the product of the enclosing
-    /// transforms.
+    /// Adds an object with its contents. `to_world` is the product of the enclosing transforms.
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
             ObjectKind::Group(group) => self.group(group, to_world),
