@@ -188,7 +188,7 @@ fn errors_have_positions() {
         ("void plastic m 0 2 1 2 0", "1:18 error primitives have no integer arguments: this must be 0"),
         (
             "m sphere s 0 0 4 0 0 0 1",
-            "1:1 error no modifier `m` is defined before this (files with materials must precede the files that use them)",
+            "1:1 error no modifier `m` is defined before this point (files with materials must precede the files that use them)",
         ),
         (
             "void polygon p 0 0 6 0 0 0 1 1 1",
