@@ -94,9 +94,15 @@ pub fn handle_signals() {
     let _ = ctrlc::set_handler(|| interrupt(2));
 }
 
-/// Enters the phase in which the program waits for changes.
+/// Enters the phase in which the program waits for changes. A signal that arrived during a save
+/// takes effect now.
 pub fn idle() {
-    *locked(&PHASE) = Phase::Idle;
+    let signal = locked(&LAST);
+    let mut phase = locked(&PHASE);
+    if signal.is_some() {
+        end(0);
+    }
+    *phase = Phase::Idle;
 }
 
 /// Leaves the phase in which the program waits for changes.

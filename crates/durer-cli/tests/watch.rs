@@ -114,7 +114,7 @@ fn watch_survives_file_changes() {
         let _ = Command::new("touch").args(["-d", date]).arg(folder.path("scene.txt")).status();
         shows_what_is_there(&folder, &mut child, date);
     }
-    ended(&folder, child);
+    ended(&folder, child, &[0]);
 }
 
 #[test]
@@ -136,12 +136,40 @@ fn rapid_saves_end_in_last_picture() {
     }
     folder.write("scene.txt", scene("0.25 0.5 0.75"));
     shows_what_is_there(&folder, &mut child, "2000 saves");
-    ended(&folder, child);
+    ended(&folder, child, &[0]);
 }
 
-fn ended(folder: &TestFolder, mut child: Child) {
+/// A signal ends the watch even if it arrives while the picture is being saved.
+#[test]
+fn signal_during_a_save_ends_the_watch() {
+    let folder = TestFolder::new();
+    for number in 0..20 {
+        let mut child = watching(&folder);
+        let start = Instant::now();
+        while !folder.path("a.png").exists() {
+            assert_eq!(child.try_wait().unwrap(), None);
+            assert!(start.elapsed() < Duration::from_secs(60), "no picture in run {number}");
+        }
+        // Before anything is saved, the signal ends the program with exit code 130.
+        ended(&folder, child, &[0, 130]);
+        std::fs::remove_file(folder.path("a.png")).unwrap();
+    }
+}
+
+fn ended(folder: &TestFolder, mut child: Child, codes: &[i32]) {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let start = Instant::now();
+    let code = loop {
+        match child.try_wait().unwrap() {
+            Some(status) => break status.code().unwrap(),
+            None if start.elapsed() < Duration::from_secs(30) => std::thread::sleep(Duration::from_millis(10)),
+            None => {
+                child.kill().unwrap();
+                panic!("it runs on after Ctrl-C");
+            }
+        }
+    };
+    assert!(codes.contains(&code), "exit code {code}");
     let output = String::from_utf8_lossy(&folder.bytes("errors")).into_owned();
     assert!(!output.contains("panicked"), "{output}");
     let left: Vec<String> =
