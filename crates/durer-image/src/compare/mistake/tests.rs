@@ -196,3 +196,32 @@ fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     let found = findings(&lit, &|x, y| if x == 0 && y == 0 { Vec3::splat(0.5) } else { Vec3::ZERO });
     assert!(found.iter().all(|f| f.kind == "black-parts"), "{found:?}");
 }
+
+/// A mistake that leaves a visible part of the difference unexplained is reported with "nearly".
+#[test]
+fn remaining_difference_is_stated() {
+    // One pixel in sixteen is brighter, at irregular positions.
+    let brighter = |x: usize, y: usize| if (x * 7919 + y * 104_729) % 251 < 16 { 0.03 } else { 0.0 };
+    const LAST: usize = SIDE - 1;
+    type Paint = fn(usize, usize) -> Vec3;
+    let pictures: [(&str, Paint); 6] = [
+        ("mirrored", |x, y| scene(LAST - x, y)),
+        ("upside-down", |x, y| scene(x, LAST - y)),
+        ("shifted", |x, y| scene((x + 3).min(LAST), y)),
+        ("channels", |x, y| {
+            let [r, g, b] = scene(x, y).to_array();
+            Vec3::new(b, g, r)
+        }),
+        ("gamma-once-less", |x, y| scene(x, y).map(srgb_to_linear)),
+        ("inverted", |x, y| 1.0 - scene(x, y)),
+    ];
+    for (kind, paint) in pictures {
+        let found = findings(&scene, &move |x, y| paint(x, y) + brighter(x, y));
+        assert!(found.len() == 1 && found[0].kind == kind && found[0].explained > 0.95, "{found:?}");
+        let description = &found[0].description;
+        assert!(
+            description.starts_with("nearly: ") && description.ends_with("something more is different"),
+            "{description}"
+        );
+    }
+}
