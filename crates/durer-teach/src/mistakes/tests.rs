@@ -184,17 +184,21 @@ const COMMON: [(&str, f32); 49] = [
     ("wrapped", 0.0),
 ];
 
+/// Returns the explanations of a mistake if none of them is the mistake alone.
+fn unnamed(text: &str, job: Job, name: &str, value: f32) -> Option<String> {
+    let explanations = found_in(text, job, &[(name, value)]).explanations;
+    if explanations.iter().any(|e| e.mistakes.len() == 1 && e.mistakes[0].0.name == name) {
+        return None;
+    }
+    let names: Vec<Vec<_>> =
+        explanations.iter().map(|e| e.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
+    Some(format!("{name} {value}: {names:?}"))
+}
+
 #[test]
 fn each_usual_mistake_is_named() {
     let mut wrong = Vec::new();
-    let mut judge = |text: &str, job: Job, name: &str, value: f32| {
-        let named = found_in(text, job, &[(name, value)]).explanations;
-        if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
-            let messages: Vec<Vec<_>> =
-                named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
-            wrong.push(format!("{name} {value}: {messages:?}"));
-        }
-    };
+    let mut judge = |text: &str, job, name, value| wrong.extend(unnamed(text, job, name, value));
     // Make the scene so bright that values are clamped, with little glass, so that every term is
     // visible.
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
@@ -242,14 +246,15 @@ const ALSO_COMMON: [(&str, f32); 21] = [
 fn each_further_mistake_is_named() {
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
     let mut wrong = Vec::new();
+    let mut judge = |text: &str, name, value| wrong.extend(unnamed(text, job(), name, value));
     for (name, value) in ALSO_COMMON {
-        let named = found_in(&bright, job(), &[(name, value)]).explanations;
-        if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
-            let messages: Vec<Vec<_>> =
-                named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
-            wrong.push(format!("{name} {value}: {messages:?}"));
-        }
+        judge(&bright, name, value);
     }
+    // The third side of the triangle is visible only if the triangle points downwards.
+    let hanging =
+        bright.replace("-3 -0.5 -3 vertex1 3 -0.5 -3 vertex2 0 3 -3", "-3 3 -3 vertex1 3 3 -3 vertex2 0 1 -3");
+    judge(&hanging, "triangle-test", 2.0);
+    judge(&bright.replace("ZRotate", "XRotate"), "rotation-axis", 0.0);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
