@@ -237,9 +237,11 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
             assert!(matches!(output.code, Some(2 | 124)), "{command} {size}: {:?} {}", output.code, output.err);
         }
     }
-    for line in
-        ["course -input scene.txt -size 16384 16384 -output o.tga", "photo place scene.txt --backplate o.png -o p.png"]
-    {
+    for line in [
+        "course -input scene.txt -size 16384 16384 -output o.tga",
+        "lesson scene.txt -o lesson --size 16384x16384 --samples 1",
+        "photo place scene.txt --backplate o.png -o p.png",
+    ] {
         let script = format!("ulimit -v 500000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
         let output = folder.shell(&script);
         assert!(matches!(output.code, Some(0..=2 | 124)), "{line}: {:?} {}", output.code, output.err);

@@ -1,5 +1,6 @@
 //! Execution options and progress counters of a render.
 
+use super::RenderError;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::time::Duration;
 
@@ -31,6 +32,19 @@ pub struct Control {
     /// True if `total_work` is the total of several renders. The finished work of all these renders
     /// is then added up in `done_work`.
     pub accumulates: bool,
+}
+
+impl Control {
+    /// Checks that a number of bytes is within the memory limit.
+    ///
+    /// # Errors
+    /// Returns [`RenderError::Memory`] if it is not.
+    pub fn check_memory(&self, needed: u64) -> Result<(), RenderError> {
+        match self.memory {
+            Some(allowed) if needed > allowed => Err(RenderError::Memory { needed, allowed }),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Point at which a call of [`super::PartialRender::render_to`] stops.

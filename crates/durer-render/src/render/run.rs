@@ -126,9 +126,7 @@ impl PartialRender {
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         let stored = stored_bytes(&self.job, tile).saturating_mul(threads as u64);
         let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(stored);
-        if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
-            return Err(RenderError::Memory { needed, allowed });
-        }
+        control.check_memory(needed)?;
         let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
         let (all, done) = self.work();
         if done == 0 && !can_allocate(needed) {

@@ -5,7 +5,7 @@ use crate::mistakes::{SceneVariant, mistake_by_name};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::course::{self, ReadOptions};
-use durer_image::{Image, Layer};
+use durer_image::{Image, Layer, can_allocate};
 use durer_render::compile::{AccelKind, Resources, compile};
 use durer_render::film::aov::Aov;
 use durer_render::film::{Filter, luminance_of};
@@ -116,7 +116,7 @@ impl LessonScene {
             return Ok(picture.clone());
         }
         let picture = match shot.aov {
-            Some("rays") => self.directions()?,
+            Some("rays") => self.directions(control)?,
             value => {
                 let options = self.with_method(shot.options);
                 self.apply(&options);
@@ -242,8 +242,15 @@ impl LessonScene {
 
     /// Returns the ray directions through the pixel centres as colours from 0 to 1. Pixels without
     /// a ray are black.
-    fn directions(&self) -> Result<LessonPicture, RenderError> {
+    fn directions(&self, control: &Control) -> Result<LessonPicture, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
+        // The ray, the coverage, the colour and the value of each pixel are stored.
+        let bytes = size_of::<Option<Vec3>>() + size_of::<f32>() + 2 * size_of::<Vec3>();
+        let needed = u64::from(width) * u64::from(height) * bytes as u64;
+        control.check_memory(needed)?;
+        if !can_allocate(needed) {
+            return Err(RenderError::NoMemory(needed));
+        }
         let rays: Vec<Option<Vec3>> = self
             .job
             .whole()
