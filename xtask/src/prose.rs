@@ -38,6 +38,7 @@ impl Paragraph {
 }
 
 /// A listed phrase, or a comment that is too wide, at a line of a file.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Finding {
     file: String,
     line: usize,
@@ -76,13 +77,7 @@ fn findings(root: &Path) -> Result<Vec<Finding>> {
     for path in sources(root)? {
         let file = path.strip_prefix(root)?.to_string_lossy().into_owned();
         let text = std::fs::read_to_string(&path).with_context(|| file.clone())?;
-        let in_file = find_phrases(&text, file.ends_with(".md"), &rules);
-        findings.extend(in_file.into_iter().map(|(line, message, rule)| Finding {
-            file: file.clone(),
-            line,
-            message,
-            rule,
-        }));
+        findings.extend(find_phrases(&file, &text, &rules));
     }
     Ok(findings)
 }
@@ -122,17 +117,16 @@ fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// Returns the findings in a file: line, message and rule.
-fn find_phrases(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
+/// Returns the findings in the text of a file, in the order of its lines.
+fn find_phrases(file: &str, text: &str, rules: &[Rule]) -> Vec<Finding> {
+    let is_document = file.ends_with(".md");
     let mut all = Vec::new();
+    let mut add = |line, message, rule| all.push(Finding { file: file.into(), line, message, rule });
     for (number, line) in text.lines().enumerate() {
         let is_comment = !is_document && line.trim_start().starts_with("//");
         if is_comment && line.chars().count() > MAX_COLUMNS && !line.contains("http") {
-            all.push((
-                number + 1,
-                format!("{} columns", line.chars().count()),
-                format!("more than {MAX_COLUMNS} columns"),
-            ));
+            let message = format!("{} columns", line.chars().count());
+            add(number + 1, message, format!("more than {MAX_COLUMNS} columns"));
         }
     }
     let paragraphs = if is_document { document(text) } else { code(text) };
@@ -145,7 +139,7 @@ fn find_phrases(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, St
                     instead => format!("`{}`: write {instead}", rule.phrase),
                 };
                 let kind = if rule.begin { "begins: " } else { "" };
-                all.push((paragraph.line(at), message, format!("{kind}{}", rule.phrase)));
+                add(paragraph.line(at), message, format!("{kind}{}", rule.phrase));
             }
         }
     }
@@ -263,7 +257,8 @@ mod tests {
     fn messages(text: &str, is_document: bool) -> Vec<(usize, String)> {
         let rules =
             rules("[begin]\nwhat | a noun\n[phrase]\nno number | NaN\nlamp | light\nreckon* | compute").unwrap();
-        find_phrases(text, is_document, &rules).into_iter().map(|(line, _, rule)| (line, rule)).collect()
+        let file = if is_document { "a.md" } else { "a.rs" };
+        find_phrases(file, text, &rules).into_iter().map(|finding| (finding.line, finding.rule)).collect()
     }
 
     #[test]
