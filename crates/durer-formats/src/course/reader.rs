@@ -43,8 +43,8 @@ pub(super) struct Reader<'a, 'd> {
     pub depth: usize,
     /// Keywords of the blocks that are open, starting with the outermost one.
     pub blocks: Vec<Span>,
-    /// Index of the token in front of which a missing `}` was reported. If several blocks end at
-    /// the same token, only one error is reported.
+    /// Index of the token in front of which a missing `}` was reported. Only one error is reported
+    /// per token, even if several blocks end there.
     pub unclosed_at: Option<usize>,
     /// True if reading has been abandoned. Errors after that point are dropped.
     stopped: bool,

@@ -5,8 +5,8 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use std::fmt::Write;
 
-/// Formats a mesh as a Wavefront file. Numbers are written with the fewest digits that read back as
-/// the same value.
+/// Formats a mesh as a Wavefront file. Each number has the fewest digits that identify its value
+/// exactly.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     // Writing to a `String` never fails.
     let mut out = String::new();

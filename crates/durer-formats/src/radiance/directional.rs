@@ -41,8 +41,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the name of the light profile for a surface and a distribution. Surfaces that have
-    /// the same orientation share a profile.
+    /// Returns the name of the light profile for a surface and a distribution. Surfaces with equal
+    /// orientations share a profile.
     fn profile(
         &mut self,
         spread: &Rc<DirectionalDistribution>,

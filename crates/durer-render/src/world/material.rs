@@ -165,7 +165,7 @@ pub struct WeightedMaterial<'w> {
     pub share: f32,
 }
 
-/// Materials at a surface point, of which there is usually only one.
+/// Materials at a surface point, usually only one, with their shares.
 pub type MaterialMix<'w> = SmallVec<[WeightedMaterial<'w>; 2]>;
 
 impl Default for Phong {

@@ -94,8 +94,8 @@ pub enum Accel {
 
 /// First intersection of a ray with a world, given by its distance, object and part.
 ///
-/// Hits are ordered by `t`, then object, then part. Therefore all acceleration structures return
-/// the same hit.
+/// Hits are ordered by `t`, then object, then part, so every acceleration structure returns the
+/// same hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray, as a multiple of the direction's length.

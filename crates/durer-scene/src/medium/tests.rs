@@ -43,8 +43,7 @@ fn grid_transmittance_agrees_with_the_integral() {
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
     let place = MediumRegion { bounds, to_world: None, density: Some(Arc::new(grid)) };
-    // The same box is given by its opposite corner, with the axes of the unit cube along -x, z and
-    // y.
+    // Describe that box by its opposite corner, with the axes of the unit cube along -x, z and y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
     let to_world = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };

@@ -103,8 +103,7 @@ mod tests {
 
     #[test]
     fn sun_position_agrees_across_time_zones() {
-        // The same moment is given in several time zones, in one of which it is already the next
-        // day.
+        // Compare one moment in three time zones. In one of them, the next day has already begun.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);

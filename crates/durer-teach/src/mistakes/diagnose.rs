@@ -473,7 +473,7 @@ fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &T
 
 /// Returns true if two explanations differ only in the values of their mistakes.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    // The same mistake counts as different if it affects another light.
+    // Mistakes of a light count as equal only if they affect one and the same light.
     let alike =
         |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))

@@ -98,8 +98,8 @@ impl Whitted<'_> {
         // does. A NaN normal, which can occur only in the arithmetic of the official programs, is
         // passed on.
         let n = if dir.dot(n) < 0.0 || n.is_nan() { n } else { n_geo };
-        // Without `shade_back`, mirrors reflect about the normal that was not flipped, which gives
-        // the same direction.
+        // Without `shade_back`, mirrors reflect about the unflipped normal. The reflected direction
+        // does not depend on the sign of the normal.
         let mirrored = reflect(dir, n);
         // If the normal is not of unit length, neither is the reflected direction.
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
