@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
-use crate::rays::{RayCase, BenchHit, Mesh, cases};
+use crate::rays::{BenchHit, Mesh, RayCase, cases};
 use anyhow::{Context, Result};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};

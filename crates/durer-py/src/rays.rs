@@ -106,9 +106,12 @@ impl<'a> Rays<'a> {
                     t_max,
                 })
             }
-            origins => {
-                self.map_job(first, |i, dir, t_min, t_max| Ray { origin: origins.relative_to(center, i), dir, t_min, t_max })
-            }
+            origins => self.map_job(first, |i, dir, t_min, t_max| Ray {
+                origin: origins.relative_to(center, i),
+                dir,
+                t_min,
+                t_max,
+            }),
         }
     }
 

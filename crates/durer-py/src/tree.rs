@@ -1,6 +1,6 @@
 //! Ray and point queries on meshes, and on scenes that consist of instances.
 
-use crate::rays::{PointArray, JOB, Points, RayArrays, Rays, points};
+use crate::rays::{JOB, PointArray, Points, RayArrays, Rays, points};
 use crate::work::{Pace, each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Ray64, Vec3};

@@ -22,7 +22,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, mpsc};
 
-create_exception!(durer, SceneError, PyValueError, "Raised if a scene cannot be rendered; states the reason and the position in the file.");
+create_exception!(
+    durer,
+    SceneError,
+    PyValueError,
+    "Raised if a scene cannot be rendered; states the reason and the position in the file."
+);
 create_exception!(durer, RenderError, PyException, "Raised if a render fails, or if a part cannot be used.");
 
 fn failed(error: impl ToString) -> PyErr {
@@ -179,7 +184,8 @@ impl World {
                 let mut result = Ok(());
                 while wait.recv_timeout(POLL_INTERVAL) == Err(mpsc::RecvTimeoutError::Timeout) {
                     if result.is_ok() {
-                        result = poll(watch.as_ref(), control.done_work.load(Relaxed), control.total_work.load(Relaxed));
+                        result =
+                            poll(watch.as_ref(), control.done_work.load(Relaxed), control.total_work.load(Relaxed));
                         control.cancel.store(result.is_err(), Relaxed);
                     }
                 }
