@@ -84,6 +84,19 @@ impl World {
         (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
     }
 
+    /// Replaces the decoded values of 8-bit codes in the textures with the given indices. The
+    /// world's new hash is computed from the old one and these values.
+    pub fn decode_textures(&mut self, textures: &[u32], decode: fn(u8) -> f32) {
+        let values: Vec<f32> = (0..=255).map(decode).collect();
+        let text = format!("{} {textures:?} {values:?}", self.digest());
+        for (index, texture) in (0..).zip(&mut self.assets.textures) {
+            if textures.contains(&index) {
+                *texture = texture.clone().with_decoding(decode);
+            }
+        }
+        (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
+    }
+
     /// Returns a hash that identifies the contents. For an unedited world, it is the hash of its
     /// sources: the scene file, the files it refers to and the rules.
     pub fn digest(&self) -> Digest {

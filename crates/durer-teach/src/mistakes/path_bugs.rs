@@ -22,6 +22,8 @@ pub enum DirectionSampling {
     Undivided,
     /// Uniform sampling over the hemisphere, but divided by the pdf of cosine sampling.
     Uniform,
+    /// BSDF sampling, but divided by the pdf of uniform sampling over the hemisphere.
+    UniformPdf,
     /// BSDF sampling in which the local coordinates are used as world-space coordinates.
     LocalFrame,
     /// BSDF sampling with the same random number for both dimensions.
@@ -44,6 +46,40 @@ pub enum MissingFactor {
     Choice,
     /// The division by the pdf of the sample is omitted.
     Density,
+    /// The sample is divided by the pdf of BSDF sampling instead of its own pdf.
+    OwnDensity,
+}
+
+/// Method by which a student's path tracer compensates for paths that end by Russian roulette.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RouletteBug {
+    /// Surviving paths are divided by the survival probability, which is correct.
+    #[default]
+    Correct,
+    /// Surviving paths are not divided.
+    Undivided,
+    /// Each channel is divided by its own throughput, so the paths lose their colour.
+    PerChannel,
+}
+
+/// Mistakes of a student's path tracer where light is refracted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RefractionBug {
+    /// There is no mistake.
+    #[default]
+    Correct,
+    /// The radiance is not scaled by the square of the relative index of refraction.
+    Unscaled,
+    /// The radiance is divided by the square of the index both when entering and when leaving.
+    DividedTwice,
+    /// The radiance is multiplied by the square of the index both when entering and when leaving.
+    MultipliedTwice,
+    /// The relative index of refraction is inverted.
+    Inverted,
+    /// The tangential part of the direction has the wrong sign.
+    Flipped,
+    /// The direction does not change.
+    Straight,
 }
 
 /// Mistakes in a student's environment light.
@@ -83,8 +119,12 @@ pub struct PathBugs {
     pub missing_factor: MissingFactor,
     /// Light and BSDF samples are added without MIS weights.
     pub unweighted: bool,
-    /// Paths that survive Russian roulette are not divided by the survival probability.
-    pub undivided_roulette: bool,
+    /// Russian roulette.
+    pub roulette: RouletteBug,
+    /// Refraction.
+    pub refraction: RefractionBug,
+    /// A path starts with the throughput at which the previous path of the pixel ended.
+    pub kept_throughput: bool,
     /// One-sided emitters emit on both sides.
     pub two_sided: bool,
     /// Environment light.

@@ -17,6 +17,7 @@ use durer_render::world::World;
 use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::scene::Scene;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0.1 1 0 angle 40 }
 Lights { numLights 2 DirectionalLight { direction -1 -2 -1 color 0.7 0.7 0.6 }
@@ -38,11 +39,16 @@ fn world(rules: &DialectRules) -> (Scene, World) {
 }
 
 fn world_of(text: &str, rules: &DialectRules) -> (Scene, World) {
+    world_in(Path::new("."), text, rules)
+}
+
+/// Compiles a scene whose files are in a folder.
+pub(super) fn world_in(folder: &Path, text: &str, rules: &DialectRules) -> (Scene, World) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let file = files.add("scene.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = course::read(text.as_bytes(), file, options, &mut diagnostics).unwrap();
-    let source = FolderSource::new(".");
+    let source = FolderSource::new(folder);
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = compile(&scene, rules, AccelKind::Bvh, resources, &mut diagnostics).unwrap();
     (scene, world)

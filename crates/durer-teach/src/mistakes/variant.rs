@@ -272,6 +272,17 @@ impl<'s> SceneVariant<'s> {
         self.rebuild();
     }
 
+    /// Uses the values of base colour textures without decoding them.
+    pub fn undecoded_textures(&mut self) {
+        let mut textures: Vec<u32> = Vec::new();
+        for material in self.world.materials() {
+            if let Material::Phong(phong) = material {
+                textures.extend(phong.principled.as_ref().map_or(phong.texture, |own| own.maps.base_color));
+            }
+        }
+        self.world.decode_textures(&textures, |code| f32::from(code) / 255.0);
+    }
+
     /// Changes the geometry of every object.
     pub fn objects(&mut self, change: impl Fn(&mut Geometry)) {
         self.world.edit().objects.iter_mut().for_each(|object| change(&mut object.geometry));

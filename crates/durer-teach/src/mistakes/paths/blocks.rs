@@ -6,6 +6,7 @@ use crate::mistakes::pictures::View;
 use crate::mistakes::variant::SceneVariant;
 use durer_render::render::sample_places;
 use durer_scene::math::{Color, Vec2, Vec3};
+use durer_scene::spectrum::Spectrum;
 use rayon::prelude::*;
 
 /// Number of blocks along the larger side, and maximum number of camera paths per picture.
@@ -64,12 +65,12 @@ impl Blocks {
         let exposed = |light: Color| view.values(variant.output, &[light])[0];
         // Returns the value of a pixel and the variance of that value.
         let pixel = |&(x, y): &(u32, u32)| {
-            let (mut all, mut weights) = (Vec::new(), 0.0);
+            let (mut all, mut weights, mut throughput) = (Vec::new(), 0.0, Spectrum::ONE);
             let mut add = |place: Vec2, lens: Vec2, weight: f32| {
                 if all.len() < MAX_SAMPLES as usize {
-                    let light = variant
-                        .ray(&raster, (x, y), place, lens)
-                        .map_or(Color::ZERO, |ray| walker.radiance(&ray, seed, (x, y), all.len() as u32));
+                    let light = variant.ray(&raster, (x, y), place, lens).map_or(Color::ZERO, |ray| {
+                        walker.radiance(&ray, seed, (x, y), all.len() as u32, &mut throughput)
+                    });
                     let light = match variant.paths.pixel_mean {
                         PixelMean::Light => light,
                         PixelMean::Clamped => light.clamp(Color::ZERO, Color::ONE),

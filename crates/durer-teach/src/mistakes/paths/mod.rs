@@ -7,6 +7,8 @@
 mod blocks;
 mod search;
 mod table;
+#[cfg(test)]
+mod tests;
 mod walker;
 
 pub use search::{diagnose, off};

@@ -1,6 +1,8 @@
 //! The table of the mistakes that path tracers can make.
 
-use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean};
+use crate::mistakes::path_bugs::{
+    CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean, RefractionBug, RouletteBug,
+};
 use crate::mistakes::table::{Mistake, Values, row};
 
 /// Common mistakes in path tracers. [`diagnose`](super::search::diagnose) tries all of them.
@@ -56,10 +58,23 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-uniform",
         "bounces",
-        "directions are uniform over the hemisphere, but divided by the pdf of cosine sampling",
+        "directions {are uniform over the hemisphere, but divided by the pdf of cosine sampling|follow the BSDF, but are \
+         divided by the pdf of uniform sampling}",
         "uniform: pdf = 1 / (2 pi); by the cosine: pdf = cos / pi",
-        "uniform directions with pdf = cos / pi",
-        |v, _| v.paths.direction_sampling = DirectionSampling::Uniform,
+        "{uniform directions with pdf = cos / pi|cosine-distributed directions with pdf = 1 / (2 pi)}",
+        |v, other| {
+            let bug = if other == 0.0 { DirectionSampling::Uniform } else { DirectionSampling::UniformPdf };
+            v.paths.direction_sampling = bug;
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "path-light-pdf",
+        "mis",
+        "light samples are divided by the pdf of BSDF sampling",
+        "L = f cos(n) Le / pdf_light",
+        "L = f cos(n) Le / pdf_bsdf",
+        |v, _| v.paths.missing_factor = MissingFactor::OwnDensity,
     ),
     row(
         "path-local-frame",
@@ -88,10 +103,54 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-roulette",
         "bounces",
-        "paths that survive Russian roulette are not divided by the survival probability",
+        "paths that survive Russian roulette are {not divided by the survival probability|divided by the throughput of \
+         each channel instead of the survival probability}",
         "if (random() >= q) break; throughput /= q",
-        "if (random() >= q) break",
-        |v, _| v.paths.undivided_roulette = true,
+        "if (random() >= q) break{|; throughput /= throughput}",
+        |v, channel| v.paths.roulette = if channel == 0.0 { RouletteBug::Undivided } else { RouletteBug::PerChannel },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "path-throughput",
+        "bounces",
+        "the throughput is not reset to 1 at the start of a path",
+        "for each sample: throughput = 1",
+        "throughput = 1 once for each pixel",
+        |v, _| v.paths.kept_throughput = true,
+    ),
+    row(
+        "path-eta-squared",
+        "refraction",
+        "refracted radiance is {not scaled by the squared index of refraction|divided by the squared index both when \
+         entering and when leaving|multiplied by the squared index both when entering and when leaving}",
+        "throughput *= (n1 / n2)^2, where n1 is on the side of the incoming ray",
+        "{no factor|throughput /= n^2 on both sides|throughput *= n^2 on both sides}",
+        |v, how| {
+            const ALL: [RefractionBug; 3] =
+                [RefractionBug::Unscaled, RefractionBug::DividedTwice, RefractionBug::MultipliedTwice];
+            v.paths.refraction = ALL[(how as usize).min(2)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "path-refraction",
+        "refraction",
+        "refracted directions {use the inverted ratio of the indices|are bent to the wrong side|are not bent}",
+        "wi = -eta wo + (eta cos1 - cos2) n, eta = n1 / n2",
+        "{eta = n2 / n1|wi = +eta wo + ...|wi = -wo}",
+        |v, how| {
+            const ALL: [RefractionBug; 3] = [RefractionBug::Inverted, RefractionBug::Flipped, RefractionBug::Straight];
+            v.paths.refraction = ALL[(how as usize).min(2)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "path-texture",
+        "flat",
+        "colours of textures are not decoded from sRGB",
+        "color = srgb_to_linear(texel / 255)",
+        "color = texel / 255",
+        |v, _| v.undecoded_textures(),
     ),
     row(
         "path-light-factor",

@@ -2,7 +2,9 @@
 //! with the power heuristic. It uses the renderer's surfaces, BSDFs and emitters. For scenes
 //! without fog, it has the same expected value as the renderer's path tracer.
 
-use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs};
+use crate::mistakes::path_bugs::{
+    CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs, RefractionBug, RouletteBug,
+};
 use crate::mistakes::variant::SceneVariant;
 use durer_render::integrator::media::MediumStack;
 use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
@@ -60,17 +62,21 @@ impl<'w> BuggyPathTracer<'w> {
         BuggyPathTracer { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
     }
 
-    /// Returns the radiance along a camera ray for one sample of a pixel.
-    pub fn radiance(&self, ray: &Ray, seed: u64, pixel: (u32, u32), sample: u32) -> Color {
+    /// Returns the radiance along a camera ray for one sample of a pixel. `throughput` belongs to
+    /// the pixel and is overwritten by each sample.
+    pub fn radiance(&self, ray: &Ray, seed: u64, pixel: (u32, u32), sample: u32, throughput: &mut Spectrum) -> Color {
         let mut numbers = SplitMix::new(seed, pixel, sample);
-        let color = self.lanes.color(self.walk(ray.into(), &mut numbers));
+        if !self.bugs.kept_throughput {
+            *throughput = Spectrum::ONE;
+        }
+        let color = self.lanes.color(self.walk(ray.into(), &mut numbers, throughput));
         if color.is_finite() { color } else { Color::ZERO }
     }
 
-    fn walk(&self, mut ray: Ray64, numbers: &mut SplitMix) -> Spectrum {
+    fn walk(&self, mut ray: Ray64, numbers: &mut SplitMix, throughput: &mut Spectrum) -> Spectrum {
         let (world, lanes) = (self.world, &self.lanes);
         let mut media = MediumStack::around(world, ray.rounded.origin);
-        let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
+        let mut sum = Spectrum::ZERO;
         // The last vertex whose scattered direction has a finite pdf, together with that pdf.
         let mut last: Option<(Receiver, f32)> = None;
         let mut from_eye = true;
@@ -78,7 +84,7 @@ impl<'w> BuggyPathTracer<'w> {
         while layers < 1000 {
             layers += 1;
             let Some(hit) = world.closest(&ray, &mut ()) else {
-                return sum + throughput * self.background(ray.dir(), last, from_eye);
+                return sum + *throughput * self.background(ray.dir(), last, from_eye);
             };
             let at = world.interaction(ray, hit);
             let transition = self.right.transition(&at, &media);
@@ -91,31 +97,34 @@ impl<'w> BuggyPathTracer<'w> {
                 ray.rounded.t_min = hit.t;
                 continue;
             }
-            sum += throughput * self.emission(&at, last);
+            sum += *throughput * self.emission(&at, last);
             if depth > self.settings.bounces {
                 return sum;
             }
-            let shading = world.shading(
-                &at,
-                transition.as_ref().map_or(1.0, |transition| transition.ior_behind / transition.ior_front),
-                lanes,
-            );
+            let eta = transition.as_ref().map_or(1.0, |transition| transition.ior_behind / transition.ior_front);
+            let shading = world.shading(&at, eta, lanes);
             if shading.bsdf.is_black() {
                 return sum;
             }
             let n = if shading.bsdf.passes_light() { Vec3::ZERO } else { shading.frame.normal };
             let receiver = Receiver { point: at.surface.point(), n, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
             if shading.bsdf.has_non_delta() {
-                sum += throughput * self.direct(&at, &shading, &receiver, numbers);
+                sum += *throughput * self.direct(&at, &shading, &receiver, numbers);
             }
             let Some((wi, weight, pdf)) = self.scattered(&shading, numbers) else { return sum };
-            throughput *= weight;
+            let Some((wi, weight)) = self.with_refraction_bugs(&shading, wi, weight, eta) else { return sum };
+            *throughput *= weight;
             let survival = if depth < MIN_ROULETTE_DEPTH { 1.0 } else { throughput.max_element().min(MAX_SURVIVAL) };
             if numbers.next() >= survival {
                 return sum;
             }
-            if !self.bugs.undivided_roulette {
-                throughput /= survival;
+            match self.bugs.roulette {
+                RouletteBug::Correct => *throughput /= survival,
+                RouletteBug::Undivided => {}
+                RouletteBug::PerChannel if survival < 1.0 => {
+                    *throughput = throughput.map(|channel| if channel > 0.0 { 1.0 } else { 0.0 });
+                }
+                RouletteBug::PerChannel => {}
             }
             if pdf > 0.0 {
                 (last, from_eye) = (Some((receiver, pdf)), false);
@@ -196,7 +205,7 @@ impl<'w> BuggyPathTracer<'w> {
             (true, EnvironmentBug::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
             _ => light.radiance,
         };
-        value * (weight / pdf) * self.error_factor(&light, pdf) * self.lanes.light(radiance)
+        value * (weight / pdf) * self.error_factor(&light, pdf, bsdf_pdf) * self.lanes.light(radiance)
     }
 
     fn blocked(&self, mut ray: Ray64) -> bool {
@@ -212,7 +221,7 @@ impl<'w> BuggyPathTracer<'w> {
     }
 
     /// Returns the factor by which an omitted term changes a light sample.
-    fn error_factor(&self, light: &LightSample, pdf: f32) -> f32 {
+    fn error_factor(&self, light: &LightSample, pdf: f32, bsdf_pdf: f32) -> f32 {
         let extended = light.pdf > 0.0 && light.reach.is_finite();
         match self.bugs.missing_factor {
             MissingFactor::Nothing => 1.0,
@@ -224,7 +233,8 @@ impl<'w> BuggyPathTracer<'w> {
             },
             MissingFactor::Choice => light.choice,
             MissingFactor::Density => pdf,
-            MissingFactor::Distance | MissingFactor::Cosine | MissingFactor::Area => 1.0,
+            MissingFactor::OwnDensity if extended => pdf / bsdf_pdf.max(1e-4),
+            MissingFactor::Distance | MissingFactor::Cosine | MissingFactor::Area | MissingFactor::OwnDensity => 1.0,
         }
     }
 
@@ -289,8 +299,43 @@ impl<'w> BuggyPathTracer<'w> {
         let weight = self.with_cosine_bugs(sample.weight, shading, wi, false);
         Some(match self.bugs.direction_sampling {
             DirectionSampling::Undivided => (wi, weight * sample.pdf, sample.pdf),
+            DirectionSampling::UniformPdf => (wi, weight * (sample.pdf * 2.0 * PI), sample.pdf),
             DirectionSampling::LocalFrame => (sample.wi, weight, sample.pdf),
             _ => (wi, weight, sample.pdf),
+        })
+    }
+
+    /// Applies the mistakes in refraction to a scattered direction and its weight. `eta` is the
+    /// index of refraction behind the surface, divided by the index in front. Returns `None` if
+    /// the direction is impossible.
+    fn with_refraction_bugs(
+        &self,
+        shading: &Shading,
+        wi: Vec3,
+        weight: Spectrum,
+        eta: f32,
+    ) -> Option<(Vec3, Spectrum)> {
+        let (n, wo) = (shading.frame.normal, shading.frame.to_world(shading.wo));
+        if wi.dot(n) * wo.dot(n) >= 0.0 {
+            return Some((wi, weight));
+        }
+        let glass = eta.max(1.0 / eta);
+        let tangent = wi - wi.dot(n) * n;
+        Some(match self.bugs.refraction {
+            RefractionBug::Correct => (wi, weight),
+            RefractionBug::Unscaled => (wi, weight * (eta * eta)),
+            RefractionBug::DividedTwice => (wi, weight * (eta * eta / (glass * glass))),
+            RefractionBug::MultipliedTwice => (wi, weight * (eta * eta * glass * glass)),
+            RefractionBug::Inverted => {
+                let tangent = tangent * (eta * eta);
+                let cosine = (1.0 - tangent.length_squared()).max(0.0).sqrt();
+                if cosine == 0.0 {
+                    return None;
+                }
+                (tangent - n * (cosine * wo.dot(n).signum()), weight)
+            }
+            RefractionBug::Flipped => (wi - 2.0 * tangent, weight),
+            RefractionBug::Straight => (-wo, weight),
         })
     }
 }

@@ -1,0 +1,196 @@
+//! Tests that each mistake of path tracers is named in a scene that shows it.
+
+use super::diagnose;
+use super::table::MISTAKES;
+use super::walker::BuggyPathTracer;
+use crate::lesson::TOPICS;
+use crate::mistakes::path_bugs::PixelMean;
+use crate::mistakes::pictures::View;
+use crate::mistakes::tests::world_in;
+use crate::mistakes::{Diagnosis, DiagnosisInput, SceneVariant};
+use durer_image::compare::{Picture, Scale};
+use durer_image::{Image, Transfer};
+use durer_render::film::Filter;
+use durer_render::integrator::{IntegratorKind, PathOptions};
+use durer_render::render::{Job, Sampling, sample_places};
+use durer_scene::dialect::Dialect;
+use durer_scene::math::{Color, Vec2, Vec3};
+use durer_scene::spectrum::Spectrum;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// A room with a sphere and two one-sided area lights of different sizes and colours.
+const ROOM: &str = "PerspectiveCamera { center 2 1.6 5.8 direction 0 -0.06 -1 up 0 1 0 angle 60 }
+Background { color 0 0 0 }
+Materials {
+  PrincipledMaterial { baseColor 0.7 0.7 0.7 specularWeight 0 }
+  PrincipledMaterial { baseColor 0.8 0.2 0.1 specularWeight 0 }
+  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 5 emissionColor 1 0.8 0.6 }
+  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 30 emissionColor 0.5 0.7 1 } }
+Group {
+  MaterialIndex 0
+  Rectangle { corner 0 0 0 edge0 0 0 6 edge1 4 0 0 }
+  Rectangle { corner 0 3 0 edge0 4 0 0 edge1 0 0 6 }
+  Rectangle { corner 0 0 0 edge0 4 0 0 edge1 0 3 0 }
+  MaterialIndex 1
+  Rectangle { corner 0 0 0 edge0 0 3 0 edge1 0 0 6 }
+  MaterialIndex 0
+  Rectangle { corner 4 0 0 edge0 0 0 6 edge1 0 3 0 }
+  MaterialIndex 2
+  Rectangle { corner 1.4 2.6 2 edge0 1.2 0 0 edge1 0 0 1.2 }
+  MaterialIndex 3
+  Rectangle { corner 3.9 1 4 edge0 0 0 0.4 edge1 0 0.4 0 }
+  MaterialIndex 0
+  Sphere { center 1.4 0.6 2 radius 0.6 } }
+";
+
+/// A matte sphere and a textured floor under an environment map with one bright side.
+const SKY: &str = "PerspectiveCamera { center 0 1.5 6 direction 0 -0.2 -1 up 0 1 0 angle 50 }
+Background { environment sky.pfm }
+Materials {
+  PrincipledMaterial { baseColor 0.8 0.8 0.8 specularWeight 0 }
+  PrincipledMaterial { baseColorTexture checks.ppm specularWeight 0 } }
+Group {
+  MaterialIndex 0 Sphere { center 0 1 0 radius 1 }
+  MaterialIndex 1 TriangleMesh { obj_file floor.obj } }
+";
+
+/// A sphere of glass on a floor below an area light.
+const GLASS: &str = "PerspectiveCamera { center 0 1.5 6 direction 0 -0.15 -1 up 0 1 0 angle 45 }
+Background { color 0.3 0.35 0.4 }
+Materials {
+  PrincipledMaterial { baseColor 0.7 0.5 0.3 specularWeight 0 }
+  PrincipledMaterial { transmissionWeight 1 specularRoughness 0 specularIor 1.5 }
+  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 12 } }
+Group {
+  MaterialIndex 0 Rectangle { corner -4 0 -4 edge0 0 0 8 edge1 8 0 0 }
+  MaterialIndex 0 Rectangle { corner -4 0 -3 edge0 8 0 0 edge1 0 3 0 }
+  MaterialIndex 1 Sphere { center 0 1.05 0.5 radius 1 }
+  MaterialIndex 2 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }
+";
+
+/// Files to which [`SKY`] refers.
+fn files() -> Vec<(&'static str, Vec<u8>)> {
+    let sky = (0..16 * 8).flat_map(|i| {
+        let (x, y) = (i % 16, i / 16);
+        let bright = if (2..6).contains(&x) && y > 4 { 3.0 } else { 0.1 + 0.1 * y as f32 };
+        [bright, 0.9 * bright, 0.7 * bright].into_iter().flat_map(f32::to_le_bytes)
+    });
+    let checks = (0..8 * 8).flat_map(|i| if (i % 8 + i / 8) % 2 == 0 { [128, 60, 200] } else { [60, 200, 128] });
+    let floor =
+        "v -4 0 -4\nv -4 0 4\nv 4 0 4\nv 4 0 -4\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    vec![
+        ("sky.pfm", b"PF\n16 8\n-1.0\n".iter().copied().chain(sky).collect()),
+        ("checks.ppm", b"P6\n8 8\n255\n".iter().copied().chain(checks).collect()),
+        ("floor.obj", floor.into()),
+    ]
+}
+
+fn job() -> Job {
+    let sampling = Sampling::Filtered { samples: 24, filter: Filter::Box { radius: 0.5 } };
+    let job =
+        Job { width: 40, height: 30, sampling, method: IntegratorKind::Path(PathOptions::default()), ..Job::default() };
+    Job { settings: durer_render::integrator::RenderSettings { bounces: 5, ..job.settings }, ..job }
+}
+
+/// Renders an eight-bit picture of a variant.
+fn picture(variant: &SceneVariant, job: &Job, seed: u64) -> Picture {
+    let view = View { job, scale: Scale::Display, transfer: Transfer::Srgb, max_value: 1.0 };
+    let (tracer, raster) = (BuggyPathTracer::new(variant), variant.raster(job.width, job.height));
+    let samples = sample_places(&variant.world, job);
+    let exposed = |light: Color| view.values(variant.output, &[light])[0];
+    let pixel = |(x, y): (u32, u32)| {
+        let (mut sum, mut count, mut throughput) = (Color::ZERO, 0, Spectrum::ONE);
+        samples(x, y, &mut |place: Vec2, lens: Vec2, _: f32| {
+            let ray = variant.ray(&raster, (x, y), place, lens).unwrap();
+            let light = tracer.radiance(&ray, seed, (x, y), count, &mut throughput);
+            sum += match variant.paths.pixel_mean {
+                PixelMean::Light => light,
+                PixelMean::Clamped => light.clamp(Color::ZERO, Color::ONE),
+                PixelMean::Shown => exposed(light),
+            };
+            count += 1;
+        });
+        let mean = sum / count as f32;
+        if variant.paths.pixel_mean == PixelMean::Shown { mean } else { exposed(mean) }
+    };
+    let places: Vec<(u32, u32)> = job.whole().pixel_positions().collect();
+    let pixels: Vec<Vec3> = places.into_par_iter().map(pixel).collect();
+    Picture { image: Image::from_pixels(job.width, job.height, pixels).unwrap(), scale: Scale::Display }
+}
+
+/// Returns the diagnosis of a picture with one mistake.
+fn found(text: &str, change: &dyn Fn(&mut SceneVariant)) -> Diagnosis {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, content) in files() {
+        std::fs::write(folder.path().join(name), content).unwrap();
+    }
+    let (scene, world) = world_in(folder.path(), text, &Dialect::Durer.rules().without_quirks());
+    let job = job();
+    let right = SceneVariant::new(&scene, world, job.settings);
+    let mut wrong = right.clone();
+    change(&mut wrong);
+    let (reference, test) = (picture(&right, &job, 77), picture(&wrong, &job, 78));
+    let input = DiagnosisInput {
+        scene: &scene,
+        world: &right.world,
+        job: &job,
+        transfer: Transfer::Srgb,
+        reference: &reference,
+        test: &test,
+    };
+    diagnose(&input, &|_| {})
+}
+
+/// Mistakes that the room does not show, with the scene that shows them.
+const ELSEWHERE: [(&str, f32, &str); 10] = [
+    ("path-sky", 0.0, SKY),
+    ("path-sky", 1.0, SKY),
+    ("path-texture", 1.0, SKY),
+    ("path-eta-squared", 0.0, ""),
+    ("path-eta-squared", 1.0, GLASS),
+    ("path-eta-squared", 2.0, GLASS),
+    ("path-refraction", 0.0, GLASS),
+    ("path-refraction", 1.0, GLASS),
+    ("path-refraction", 2.0, GLASS),
+    ("path-depth", 1.0, GLASS),
+];
+
+#[test]
+fn each_mistake_is_named() {
+    let mut wrong = Vec::new();
+    for row in MISTAKES {
+        for value in row.values.numbers(2) {
+            let elsewhere = ELSEWHERE.iter().find(|(name, number, _)| *name == row.name && *number == value);
+            let text = elsewhere.map_or(ROOM, |(_, _, text)| text);
+            if text.is_empty() {
+                continue;
+            }
+            let diagnosis = found(text, &|variant| (row.apply)(variant, value));
+            let names: Vec<_> =
+                diagnosis.explanations.iter().map(|e| (e.mistakes[0].0.name, e.mistakes[0].1)).collect();
+            if !names.contains(&(row.name, value)) {
+                wrong.push(format!("{} {value}: {names:?} {:?}", row.name, diagnosis.remark));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn correct_picture_with_other_noise_has_no_mistake() {
+    for text in [ROOM, SKY, GLASS] {
+        let diagnosis = found(text, &|_| {});
+        assert!(diagnosis.explanations.is_empty(), "{diagnosis:?}");
+        assert!(diagnosis.remark.unwrap().contains("noise"));
+    }
+}
+
+#[test]
+fn every_row_has_a_unique_name_and_a_lesson_step() {
+    let mut names = BTreeSet::new();
+    for row in MISTAKES {
+        assert!(names.insert(row.name), "{} exists twice", row.name);
+        assert!(TOPICS.iter().any(|topic| topic.name == row.step), "{}: no step {}", row.name, row.step);
+    }
+}
