@@ -56,7 +56,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-uniform",
         "bounces",
-        "directions are uniform over the hemisphere, but divided by the pdf of cosine sampling",
+        "directions are uniform over the hemisphere, but the light is divided by the pdf of cosine sampling",
         "uniform: pdf = 1 / (2 pi); by the cosine: pdf = cos / pi",
         "uniform directions with pdf = cos / pi",
         |v, _| v.paths.direction_sampling = DirectionSampling::Uniform,
