@@ -55,19 +55,21 @@ impl fmt::Display for BuildError {
             BuildError::MissingVertex { triangle, index, vertices } => {
                 write!(
                     f,
-                    "triangle {triangle} refers to vertex {index}, but there are {vertices} vertices, numbered from 0"
+                    "triangle {triangle} has the vertex index {index}, which must be less than the number of vertices, \
+                     {vertices}"
                 )
             }
             BuildError::TooManyTriangles { triangles } => {
-                write!(f, "{triangles} triangles are too many: a tree holds fewer than 2^28")
+                write!(f, "a tree must have fewer than 2^28 triangles, not {triangles}")
             }
             BuildError::NotMultipleOfThree { list, len } => {
-                write!(f, "{list} has {len} numbers, which is not a multiple of 3")
+                write!(f, "the number of values in `{list}`, {len}, is not a multiple of 3")
             }
             BuildError::InvalidGridSize { columns, rows, heights } => {
                 write!(
                     f,
-                    "a grid of {columns} x {rows} lines needs at least two lines along each axis and a height per crossing, not {heights} heights"
+                    "a height grid needs at least 2 x 2 lines and one height per crossing, not {columns} x {rows} \
+                     lines and {heights} heights"
                 )
             }
             BuildError::NotFinite => write!(f, "the height grid has values that are not finite"),
@@ -107,7 +109,10 @@ impl fmt::Display for LoadError {
         match self {
             LoadError::NotATree => f.write_str("the data is not a saved tree"),
             LoadError::UnsupportedVersion(version) => {
-                write!(f, "the tree is saved in format {version}, which this version does not support")
+                write!(
+                    f,
+                    "the saved tree has format version {version}, which this version of the crate does not support"
+                )
             }
             LoadError::WrongLength { expected, actual } => {
                 write!(f, "the saved tree should have {expected} bytes, but has {actual}")

@@ -192,7 +192,11 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
     folder.expect_exit(0, "check back.txt");
     // The course's programs do not shade back faces, so this triangle is an error here.
     let output = folder.expect_exit(1, "check back.txt --dialect f04");
-    assert!(output.out.contains("[seen-from-behind]") && output.out.contains("its back stays black"), "{}", output.out);
+    assert!(
+        output.out.contains("[seen-from-behind]") && output.out.contains("the back of the object stays black"),
+        "{}",
+        output.out
+    );
     folder.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
     folder.expect_exit(0, "check front.txt --dialect f04");
     folder.expect_exit(0, "check back.txt --dialect f04 --shade-back");
@@ -220,7 +224,7 @@ fn faulty_picture_is_reported_after_the_render() {
     assert!(!err.contains("the picture"), "{err}");
     let err = render("camera-away.point.txt", "");
     assert!(err.contains("the picture has only one colour; `durer check` reports:"), "{err}");
-    assert!(err.contains("[camera-away]") && err.contains("turn it: `direction"), "{err}");
+    assert!(err.contains("[camera-away]") && err.contains("turn the camera: `direction"), "{err}");
     let err = render("light-divides.txt", "");
     assert!(err.contains("lacks samples") && err.contains("[light-divides]") && err.contains("sample 0"), "{err}");
     let err = render("color-range.light.txt", "");

@@ -95,7 +95,7 @@ fn invalid_arguments_are_refused() {
         ("-input scene.txt -output o.tga -size 200", "-size needs W H"),
         ("-input scene.txt -output o.tga -size 0 3", "at least one pixel"),
         ("-input scene.txt -output o.tga -size x 3", "`x` is not a valid number"),
-        ("-input scene.txt -output o.tga -size 100000 100000", "not a possible size"),
+        ("-input scene.txt -output o.tga -size 100000 100000", "a picture cannot be"),
         ("-input scene.txt -output o.tga -depth 9 9 d.tga", "two different numbers"),
         ("-input scene.txt -output o.tga -depth 9 inf d.tga", "two different numbers"),
         ("-input scene.txt -output o.tga -bounces 1000", "at most 256"),

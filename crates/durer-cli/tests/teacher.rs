@@ -191,7 +191,7 @@ fn help_suggests_the_intended_value() {
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
     let (_, text) = found(&folder, "f12a4", "", &[behind]);
-    assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
+    assert!(text.contains("light-behind") && !text.contains("move the light"), "{text}");
     // If mirrors reflect more light than they receive, the lights are not blamed.
     let mirrors = [
         ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),

@@ -204,7 +204,7 @@ impl Diagnostics {
             return true;
         };
         known.fix.extend(diagnostic.fix);
-        known.label = "here, and again further on".into();
+        known.label = "here, and again later in the file".into();
         false
     }
 

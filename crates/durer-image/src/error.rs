@@ -50,7 +50,7 @@ pub enum ImageError {
     },
     /// Decoding the picture would use more memory than is allowed.
     #[error(
-        "its {width} x {height} pixels need about {} of memory, but only {} is left",
+        "{width} x {height} pixels need about {} of memory, but only {} is left",
         format_bytes_up(*.needed), format_bytes_down(*.allowed)
     )]
     MemoryLimit {
@@ -64,14 +64,14 @@ pub enum ImageError {
         allowed: u64,
     },
     /// An allocation of this many bytes failed.
-    #[error("it needs {} of memory in one allocation, which failed", format_bytes_up(*.0))]
+    #[error("an allocation of {} of memory failed", format_bytes_up(*.0))]
     OutOfMemory(u64),
     /// 8-bit values were requested, but the picture has more than 8 bits per channel.
     #[error("the picture does not have eight bits per channel")]
     NotEightBit,
     /// The width or height is 0, there are too many pixels, or the number of pixels is not width
     /// times height.
-    #[error("{width} x {height} is not a possible size: a picture has from 1 to {} pixels", super::MAX_PIXELS)]
+    #[error("a picture cannot be {width} x {height} pixels large: it must have from 1 to {} pixels", super::MAX_PIXELS)]
     InvalidSize {
         /// Width in pixels.
         width: u32,
@@ -83,7 +83,7 @@ pub enum ImageError {
     NoLayer,
     /// Several layers were passed to a format that can hold only one. Write each layer to its own
     /// file instead.
-    #[error("{format} holds one layer, not {count}")]
+    #[error("{format} can hold only one layer, not {count}")]
     SeveralLayers {
         /// Name of the picture format.
         format: &'static str,
@@ -91,7 +91,7 @@ pub enum ImageError {
         count: usize,
     },
     /// The layers of a file have different sizes.
-    #[error("the layer `{name}` has a different size from the first")]
+    #[error("the layer `{name}` has a different size from the first layer")]
     LayerSizes {
         /// Name of the first layer whose size differs.
         name: String,

@@ -199,7 +199,7 @@ impl Session {
             }
             Request::Material { number, name, values } => {
                 let document = self.document.as_mut().filter(|document| document.is_model());
-                let document = document.ok_or("this scene has a text: edit its materials there")?;
+                let document = document.ok_or("this scene is a text file: edit the materials in the text")?;
                 document.change(|scene| model::set_material(scene, number, &name, &values))?;
                 self.restart();
                 let contents = Some(self.contents()?);
@@ -517,7 +517,7 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
     let wrong = |error: std::io::Error| format!("{}: {error}", path.display());
     // Reading a pipe or a device might never end.
     if !std::fs::metadata(path).map_err(wrong)?.is_file() {
-        return Err(format!("{}: not a file", path.display()));
+        return Err(format!("`{}` is not a file", path.display()));
     }
     Ok(std::fs::read(path).map_err(wrong)?.into())
 }

@@ -22,7 +22,7 @@ pub(crate) fn rays(
     let wanted = row.map_or(0..rows, |row| row..row + 1);
     let is_sound = (1..=MAX_RAYS).contains(&columns) && (1..=MAX_RAYS).contains(&rows) && wanted.end <= rows;
     if !is_sound || u64::from(columns) * wanted.len() as u64 > MAX_RAYS.into() {
-        return Err(format!("a raster has 1 to {MAX_RAYS} pixels, and the row must lie in it"));
+        return Err(format!("a raster must have from 1 to {MAX_RAYS} pixels, and the row must be inside the raster"));
     }
     let raster = raster(world, columns, rows);
     let one = |(x, y)| {

@@ -31,7 +31,7 @@ pub struct UnsupportedSimdLevel {
 
 impl fmt::Display for UnsupportedSimdLevel {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "DURER_SIMD is `{}`, but this processor supports only: {}", self.word, self.known)
+        write!(f, "DURER_SIMD is `{}`, but this processor supports only {}", self.word, self.known)
     }
 }
 

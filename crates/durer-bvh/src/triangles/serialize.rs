@@ -182,7 +182,7 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
 fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static str> {
     let (corners, numbers) = rows.split_at((ROWS - 1) * size);
     if corners.iter().any(|x| x.is_infinite()) {
-        return Err("a corner is infinite");
+        return Err("a vertex is infinite");
     }
     match numbers.iter().all(|number| ((number.to_bits() ^ TAG) as usize) < count) {
         true => Ok(()),

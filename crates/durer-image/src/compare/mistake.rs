@@ -23,7 +23,8 @@ use sample::{Sample, View};
 pub struct Finding {
     /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`.
     pub kind: &'static str,
-    /// Description of the mistake, without a full stop, such as "it is mirrored left to right".
+    /// Description of the mistake, without a full stop, such as "the picture is mirrored left to
+    /// right".
     pub description: String,
     /// Share of the squared difference, from 0 to 1, that is explained by this finding and the ones
     /// before it.

@@ -168,7 +168,7 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
         [channel] => Some((header, grey(channel.name.clone()))),
         _ => None,
     });
-    single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
+    single.ok_or_else(|| ImageError::unsupported(NAME, "the file has neither channels R, G and B nor a channel Y"))
 }
 
 /// Returns the size of the display window and the offset of the stored pixels within it. The stored

@@ -67,7 +67,7 @@ pub const FORMAT: Format = Format {
         Ok(ImageHeader { extra_bytes: bytes.len() as u64 + beside, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG")),
+    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported; choose PNG")),
     rows: None,
 };
 

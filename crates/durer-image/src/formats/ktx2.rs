@@ -19,7 +19,7 @@ pub const FORMAT: Format = Format {
     has_signature: |bytes| bytes.starts_with(MARK),
     head,
     decode,
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG or OpenEXR")),
+    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported; choose PNG or OpenEXR")),
     rows: None,
 };
 
@@ -123,18 +123,18 @@ fn open(bytes: &[u8]) -> Result<Texture<'_>, ImageError> {
     let [layers, faces, scheme] = [word(bytes, 32)?, word(bytes, 36)?, word(bytes, 44)?];
     let unsupported = |what: &str| Err(ImageError::unsupported(NAME, what));
     match scheme {
-        1 => return unsupported("Basis Universal (BasisLZ) is not supported: convert it with `ktx extract`"),
-        2 => return unsupported("Zstandard compression is not supported: convert it with `ktx extract`"),
+        1 => return unsupported("Basis Universal (BasisLZ) is not supported; convert the file with `ktx extract`"),
+        2 => return unsupported("Zstandard compression is not supported; convert the file with `ktx extract`"),
         0 | 3 => {}
         _ => return Err(malformed("its compression scheme is unknown")),
     }
     if kind == 0 {
-        return unsupported("Basis Universal (UASTC) is not supported: convert it with `ktx extract`");
+        return unsupported("Basis Universal (UASTC) is not supported; convert the file with `ktx extract`");
     }
     let Some(&(_, channels, number, blue_first)) = KINDS.iter().find(|row| u64::from(row.0) == kind) else {
         return Err(ImageError::unsupported(
             NAME,
-            format!("the Vulkan format {kind} is not supported: convert it with `ktx extract`"),
+            format!("the Vulkan format {kind} is not supported; convert the file with `ktx extract`"),
         ));
     };
     if height == 0 || depth > 1 || layers > 1 || faces != 1 {

@@ -19,6 +19,6 @@ pub const FORMAT: Format = Format {
         Ok(ImageHeader { bytes_per_pixel: head.bytes_per_pixel + 8, extra_bytes: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::WebP, bytes)?),
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG")),
+    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported; choose PNG")),
     rows: None,
 };

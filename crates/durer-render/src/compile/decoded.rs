@@ -66,8 +66,8 @@ pub(super) fn replace_invalid_texels(texels: &mut [Vec3], width: u32, path: &str
     let texels = if count == 1 { "one invalid texel".into() } else { format!("{count} invalid texels") };
     let [r, g, b] = texel.to_array();
     Some(format!(
-        "the image `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN is \
-         read as 0 and infinity as {BRIGHTEST}"
+        "the image `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, counted from 0 at the upper \
+         left; NaN is read as 0 and infinity as {BRIGHTEST}"
     ))
 }
 

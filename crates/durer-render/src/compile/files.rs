@@ -183,7 +183,8 @@ impl<'r> Loader<'r> {
         if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
             let most = HeightField::MAX_PIXELS;
             refuse(format!(
-                "a height field cannot have {width} x {height} pixels: it needs at least 2 x 2 and at most {most} in all"
+                "the image of a height field must have at least 2 x 2 pixels and at most {most} pixels in all, not \
+                 {width} x {height}"
             ));
             return None;
         }
@@ -301,7 +302,7 @@ impl<'r> Loader<'r> {
         }
         let emitter = Curve::light(self.curve(name, diagnostics)?);
         if emitter.is_none() {
-            let message = format!("the spectrum `{}` is black", name.path);
+            let message = format!("the spectrum `{}` has no visible light", name.path);
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         }
         emitter.map(Arc::new)

@@ -294,7 +294,7 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
         let [x, y, z] = counts;
         let most = Grid::MAX_CELLS;
         let message = format!("cannot build a grid of {x} x {y} x {z} cells");
-        let help = format!("use 1 to {most} cells; large objects must not overlap too many of them");
+        let help = format!("use 1 to {most} cells; large objects must not overlap too many cells");
         Box::new(Diagnostic::error(message).help(help))
     })?;
     Ok(Accel::Grid { grid, parts, wide })
@@ -407,7 +407,7 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
     }
     for light in written {
         if light.value.color() == Color::ZERO {
-            let message = "this light has no effect: its color is 0 0 0";
+            let message = "this light has no effect: its `color` is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
         }
     }
@@ -420,9 +420,9 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
                 Light::Point(emitter) if emitter.falloff.is_some() => format!("the `{word}` of this light is 0"),
                 _ => format!("this light has no `{word}`"),
             };
-            let message = format!("{message}: this divides by zero, as the official program does");
+            let message = format!("{message}, so its light is divided by zero, as in the official program");
             let warning = Diagnostic::warning(message).code("no-falloff").at(written.span);
-            diagnostics.push(warning.help(format!("the picture will be black; write `{word} 1`, for example")));
+            diagnostics.push(warning.help(format!("write, for example, `{word} 1`; otherwise, the picture is black")));
         }
     }
     (compiled, scene.background.ambient_light)
@@ -462,13 +462,13 @@ impl SceneFlattener<'_, '_> {
         let mut message = "this object has no material and is rendered in plain grey".to_string();
         match count {
             1 => {}
-            2 => message += "; another object has none either",
-            n => message += &format!("; {} other objects have none either", n - 1),
+            2 => message += "; one other object has no material either",
+            n => message += &format!("; {} other objects have no material either", n - 1),
         }
         let warning = Diagnostic::warning(message).code("no-material").at(span);
         self.diagnostics.push(warning.help(match is_nodes(self.rules) {
-            true => "write `Component<Material> { index 0 }` into its node",
-            false => "write `MaterialIndex 0` before it",
+            true => "write `Component<Material> { index 0 }` into the object's node",
+            false => "write `MaterialIndex 0` before the object",
         }));
     }
 
@@ -546,13 +546,13 @@ impl SceneFlattener<'_, '_> {
                 Some(affine) if affine.is_identity() => None,
                 Some(affine) => Some(affine),
                 None if self.rules.has(Quirk::AnyValues) && !matrices.is_empty() => {
-                    let message = "the transforms around this object are singular";
+                    let message = "the transforms that enclose this object are singular";
                     let warning = Diagnostic::warning(message).code("flat-transform").at(object.span);
-                    self.diagnostics.push(warning.effect("rays are divided by zero, as the official program does"));
+                    self.diagnostics.push(warning.effect("rays are divided by zero, as in the official program"));
                     None
                 }
                 None => {
-                    let message = "the transforms around this object are singular, or their numbers overflow";
+                    let message = "the transforms that enclose this object are singular, or their numbers overflow";
                     self.diagnostics.push(Diagnostic::error(message).code("flat-transform").at(object.span));
                     return None;
                 }

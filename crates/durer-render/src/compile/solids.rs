@@ -132,7 +132,11 @@ impl SceneFlattener<'_, '_> {
         if let Some([p, q]) = edge {
             let message = format!("the mesh `{path}` is not closed and cannot be part of a solid");
             let text = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
-            let help = format!("the edge from {} to {} has an odd number of triangles", text(p), text(q));
+            let help = format!(
+                "close the mesh; for example, the edge from {} to {} has an odd number of triangles",
+                text(p),
+                text(q)
+            );
             self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
         }
     }

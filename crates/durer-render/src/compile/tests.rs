@@ -41,9 +41,9 @@ fn materials_with_too_many_parts_or_levels_are_rejected() {
     let doubled = |i: usize| format!("Noise {{ materialIndex {i} materialIndex {i} octaves 1 }} ");
     let nested = |i: usize| format!("Checkerboard {{ materialIndex {i} materialIndex 0 }} ");
     assert_eq!(chain(12, &doubled), [""; 0]);
-    assert_eq!(chain(60, &doubled), ["this material has 13 levels and 8192 parts"]);
+    assert_eq!(chain(60, &doubled), ["this material is nested 13 levels deep and has 8192 parts"]);
     assert_eq!(chain(64, &nested), [""; 0]);
-    assert_eq!(chain(100_000, &nested), ["this material has 65 levels and 66 parts"]);
+    assert_eq!(chain(100_000, &nested), ["this material is nested 65 levels deep and has 66 parts"]);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn shapes_with_inconsistent_fields_are_rejected() {
         ("Ellipsoid { center 0 0 0 radii 1 0 1 }", "all `radii` of an `Ellipsoid` must be more than 0"),
         (
             "Quadric { squares 0 0 0 constant 1 }",
-            "a `Quadric` needs a coefficient other than its `constant` that is not 0",
+            "a `Quadric` needs at least one coefficient, besides `constant`, that is not 0",
         ),
         (
             "Disc { center 0 0 0 normal 0 1 0 radius 1 innerRadius 1 }",
@@ -158,7 +158,7 @@ fn height_fields_are_closed_meshes() {
         let (world, findings) = read(body);
         assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
     };
-    refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "a height field cannot have 1 x 1 pixels");
+    refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "in all, not 1 x 1");
     refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the height image cannot be read");
     refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
 }
@@ -203,7 +203,10 @@ fn cell_grid_needs_a_volume() {
     };
     assert_eq!(grid("1 1 1"), [""; 0]);
     for max in ["1 0 1", "1 1 -1"] {
-        assert_eq!(grid(max), ["each coordinate of this grid's `max` must be greater than that of its `min`"]);
+        assert_eq!(
+            grid(max),
+            ["each coordinate of the grid's `max` must be greater than the same coordinate of `min`"]
+        );
     }
 }
 

@@ -134,7 +134,7 @@ impl FromStr for Shard {
     /// Parses a shard such as `3/16`, which is the third of sixteen shards divided by tiles.
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
-        let (index, count) = numbers.ok_or("expected INDEX/COUNT, for example 3/16 for the third of sixteen")?;
+        let (index, count) = numbers.ok_or("expected INDEX/COUNT, for example 3/16 for the third of sixteen shards")?;
         match (1..=count).contains(&index) {
             true => Ok(Shard { index, count, by: ShardBy::Tiles }),
             false => Err(format!("the index must be from 1 to {count}")),

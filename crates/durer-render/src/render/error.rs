@@ -24,7 +24,7 @@ pub enum RenderError {
     #[error("the crop must be inside the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
     /// A diagram of samples would have to store too many samples.
-    #[error("too many samples for a diagram: {0}, but at most {MAX_STORED} are allowed")]
+    #[error("a diagram can show at most {MAX_STORED} samples, not {0}")]
     TooManySamples(u64),
     /// The diagram cannot be drawn for the given reason.
     #[error("{0}")]
@@ -60,7 +60,7 @@ pub enum RenderError {
 /// Error that reports a panic and the sample that caused it. A panic is a bug in Dürer. The work on
 /// other samples is kept.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("internal error: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
+#[error("internal error in pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
 pub struct Panicked {
     /// Column of the pixel.
     pub x: u32,

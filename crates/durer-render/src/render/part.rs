@@ -368,7 +368,7 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
         }
         ShardBy::Tiles => Ok(()),
         ShardBy::Samples if !job.sampling.is_local() => {
-            refuse("these samples affect several pixels: split the picture by tiles".into())
+            refuse("each sample affects several pixels: split the picture by tiles".into())
         }
         ShardBy::Samples if job.noise.is_some() => {
             refuse("a noise threshold needs all samples of a pixel: split the picture by tiles".into())

@@ -42,10 +42,10 @@ pub enum PartError {
     #[error("it is truncated or damaged: its checksum is wrong")]
     Damaged,
     /// The part was written by another version of Dürer.
-    #[error("it was written by Dürer {0}, but this is {VERSION}, so the pictures could differ")]
+    #[error("it was written by Dürer {0}, but this is Dürer {VERSION}, so the pictures could differ")]
     OtherVersion(String),
     /// The checksum is correct, but the content is invalid.
-    #[error("it is malformed: {0}")]
+    #[error("it is malformed ({0})")]
     Malformed(String),
     /// The job in the file is invalid.
     #[error(transparent)]
@@ -54,7 +54,7 @@ pub enum PartError {
     #[error("it belongs to a different scene, or a file of the scene has changed")]
     OtherScene,
     /// The part belongs to another job.
-    #[error("it belongs to a different job: {0}")]
+    #[error("it belongs to a different job ({0})")]
     OtherJob(String),
 }
 
@@ -178,10 +178,10 @@ impl PartialRender {
         match (format, version) {
             (Some(FORMAT), Some(VERSION)) => {}
             (Some(_), Some(version)) => return Err(PartError::OtherVersion(version.into())),
-            _ => return Err(malformed("its header")),
+            _ => return Err(malformed("its header is invalid")),
         }
-        let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its header"))?;
-        let mut json = || text(&mut rest).ok_or(malformed("its header"));
+        let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its header is invalid"))?;
+        let mut json = || text(&mut rest).ok_or(malformed("its header is invalid"));
         let (job, shard, display) = (json()?, json()?, json()?);
         let wrong = |error: serde_json::Error| PartError::Malformed(error.to_string());
         let job: Job = serde_json::from_str(job).map_err(wrong)?;
@@ -189,13 +189,13 @@ impl PartialRender {
         let display = serde_json::from_str(display).map_err(wrong)?;
         // This rejects jobs that need far more memory than the size of the file justifies.
         let part = PartialRender::empty(job, shard, Digest(scene), display)?;
-        part.read_blocks(rest).ok_or(malformed("its blocks"))?;
+        part.read_blocks(rest).ok_or(malformed("its blocks are invalid"))?;
         if part.job.adaptive {
             part.allocate();
         }
         // Reject encodings that `write` would not produce.
         if part.write() != bytes {
-            return Err(malformed("Dürer would encode it differently"));
+            return Err(malformed("Dürer would encode the data differently"));
         }
         Ok(part)
     }
@@ -251,7 +251,7 @@ impl PartialRender {
     pub fn same_work(&self, other: &PartialRender) -> Result<(), PartError> {
         self.same_picture(other)?;
         if self.shard != other.shard {
-            return Err(PartError::OtherJob(format!("it is shard {}, expected {}", other.shard, self.shard)));
+            return Err(PartError::OtherJob(format!("it is shard {} instead of {}", other.shard, self.shard)));
         }
         Ok(())
     }
@@ -273,6 +273,6 @@ fn first_difference(own: &str, other: &str) -> String {
     let differs = own.iter().find(|(name, value)| other.get(*name) != Some(value));
     let shown = |value: Option<&serde_json::Value>| value.map(ToString::to_string).unwrap_or_default();
     differs.map_or("it differs".into(), |(name, value)| {
-        format!("its `{name}` is {}, expected {value}", shown(other.get(name)))
+        format!("its `{name}` is {} instead of {value}", shown(other.get(name)))
     })
 }

@@ -52,7 +52,7 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
 pub fn validate(blades: u32) -> Result<(), String> {
     let wrong = (1..=2).contains(&blades) || blades > MAX_BLADES;
     match wrong {
-        true => Err(format!("`blades` must be 0, for a round opening, or 3 to {MAX_BLADES}")),
+        true => Err(format!("`blades` must be 0 (a round opening) or from 3 to {MAX_BLADES}")),
         false => Ok(()),
     }
 }

@@ -157,7 +157,10 @@ impl Projection for MultipleCenterCamera {
             let wrong =
                 !column.right.is_finite() || column.forward.cross(self.up.as_dvec3().normalize()).length() < 1e-6;
             match wrong {
-                true => Err(format!("at row {row} of `path` the eye equals its target, or looks along `up`")),
+                true => Err(format!(
+                    "at row {row} of `path`, the eye must differ from its target, and the viewing \
+                     direction must not be parallel to `up`"
+                )),
                 false => Ok(()),
             }
         })

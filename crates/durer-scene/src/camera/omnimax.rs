@@ -95,8 +95,8 @@ impl SingleViewpoint for OmnimaxCamera {
         let outside = |position: Vec3| position.length() >= 0.99;
         match (outside(self.projector), outside(self.viewer)) {
             (false, false) => Ok(()),
-            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its centre".into()),
-            _ => Err("the viewer must be inside the dome: less than 0.99 from its centre".into()),
+            (true, _) => Err("the projector must be inside the dome, less than 0.99 dome radii from its centre".into()),
+            _ => Err("the viewer must be inside the dome, less than 0.99 dome radii from its centre".into()),
         }
     }
 

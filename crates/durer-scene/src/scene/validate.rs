@@ -91,7 +91,7 @@ impl Fog {
     pub fn validate(&self) -> Result<(), String> {
         match (self.min, self.max) {
             (Some(min), Some(max)) if !min.cmplt(max).all() => {
-                Err("each coordinate of this fog's `max` must be greater than that of its `min`".into())
+                Err("each coordinate of the fog's `max` must be greater than the same coordinate of `min`".into())
             }
             (Some(_), None) | (None, Some(_)) => Err("a box of fog needs both `min` and `max`".into()),
             _ => Ok(()),
@@ -143,7 +143,7 @@ impl Validator {
         if is_valid && let Err(message) = together(entry) {
             let error = Diagnostic::error(message);
             let lacks_sun = error.message.contains("`cieSky`");
-            let help = "write `sun x y z`, the direction to the sun with y up; skies 1, 3, 5 and 16 need none";
+            let help = "write `sun x y z`, the direction to the sun with y up; skies 1, 3, 5 and 16 need no sun";
             self.report(if lacks_sun { error.help(help) } else { error }, span);
         }
     }
@@ -182,7 +182,7 @@ impl Validator {
             };
             let (nesting, parts) = (1 + first.0.max(second.0), first.1 + second.1);
             if nesting > MAX_MATERIAL_NESTING || parts > MAX_MATERIAL_PARTS {
-                let message = format!("this material has {nesting} levels and {parts} parts");
+                let message = format!("this material is nested {nesting} levels deep and has {parts} parts");
                 let help = format!("use at most {MAX_MATERIAL_NESTING} levels and {MAX_MATERIAL_PARTS} parts");
                 return self.report(Diagnostic::error(message).help(help), material.span);
             }
@@ -203,8 +203,12 @@ impl Validator {
             && index as usize >= self.materials
             && !span.has_position()
         {
-            let count = self.materials;
-            self.error(format!("an object has material {index}, but the scene has {count}, counted from 0"), span);
+            let there = match self.materials {
+                0 => "no materials".into(),
+                1 => "only material 0".into(),
+                count => format!("only {count} materials (0 to {})", count - 1),
+            };
+            self.error(format!("an object has material {index}, but the scene has {there}"), span);
         }
         match &object.node {
             ObjectKind::Group(group) => self.group(group, level + 1),

@@ -145,7 +145,9 @@ impl MeshData {
         };
         let (triangles, positions) = (self.triangles.len(), self.positions.len());
         if self.triangles.iter().flatten().any(|&i| i as usize >= positions) {
-            return Err(format!("an index is out of range: the mesh has {positions} positions, counted from 0"));
+            return Err(format!(
+                "`triangles` has an index of {positions} or more, but the mesh has only {positions} positions"
+            ));
         }
         if !self.positions.iter().all(|p| p.is_finite()) {
             return Err("positions must be finite".into());
@@ -160,7 +162,7 @@ impl MeshData {
                 return Err(format!("`{name}` has {} entries for {triangles} triangles", list.len()));
             }
             if !below(list, count) {
-                return Err(format!("an index of `{name}` is out of range: there are {count}, counted from 0"));
+                return Err(format!("`{name}` has an index of {count} or more, but there are only {count} values"));
             }
         }
         let by_position =

@@ -110,7 +110,7 @@ impl Shape for Quadric {
     fn validate(&self) -> Result<(), String> {
         let nothing = [self.squares, self.products, self.linear].iter().all(|v| *v == Vec3::ZERO);
         match nothing {
-            true => Err("a `Quadric` needs a coefficient other than its `constant` that is not 0".into()),
+            true => Err("a `Quadric` needs at least one coefficient, besides `constant`, that is not 0".into()),
             false => Ok(()),
         }
     }

@@ -28,7 +28,9 @@ impl VoxelGrid {
     pub fn validate(&self) -> Result<(), String> {
         match self.min.cmplt(self.max).all() {
             true => Ok(()),
-            false => Err("each coordinate of this grid's `max` must be greater than that of its `min`".into()),
+            false => {
+                Err("each coordinate of the grid's `max` must be greater than the same coordinate of `min`".into())
+            }
         }
     }
 

@@ -149,17 +149,17 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let turn = match shape(object).and_then(Shape::flip) {
-            Some(Flip::Corners(_)) => "swap two of its corners".into(),
+            Some(Flip::Corners(_)) => "swap two vertices of the triangle".into(),
             Some(flip) => flip_text(flip),
-            None => "negate its `normal`".into(),
+            None => "negate `normal`".into(),
         };
         let message = format!("the {} emits light away from everything visible", scene_probe.object(number));
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(number))
-            .effect("it lights nothing visible, and its back is black")
+            .effect("the light illuminates nothing visible, and its back is black")
             .help(format!(
-                "a surface emits light on the side of its normal: {turn}, or set `walls thin` in its material so \
-                 that both sides emit light"
+                "{turn}, because a surface emits light on the side of its normal; or set `walls thin` in the material \
+                 so that both sides emit light"
             ));
         let whole = scene_probe.is_dark() || scene_probe.world().lights().is_empty();
         Some(Finding::from(with_flip(scene_probe, diagnostic, number)).affecting_whole_picture(whole))
@@ -200,9 +200,9 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
         .effect(if scene_probe.is_dark() {
             "the picture is black"
         } else {
-            "none of its light reaches the visible surfaces directly"
+            "none of this light reaches the visible surfaces directly"
         })
-        .help("is the light on the wrong side, or inside? Move it to the visible side");
+        .help("move the light out of the occluder, or to the side of the visible surfaces");
         // If the picture is not dark, the light arrives indirectly.
         let dark = scene_probe.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
@@ -245,8 +245,8 @@ pub(super) fn in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
             format!("the {} emits light inside the {}", scene_probe.object(number), scene_probe.object(glass));
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(number))
-            .related(scene_probe.object_span(glass), "the glass around it")
-            .effect("paths hit it only by chance, so the picture has little light and bright specks")
+            .related(scene_probe.object_span(glass), "the glass around the light")
+            .effect("paths hit the light only by chance, so the picture is dark and has bright specks")
             .help("use `--integrator photons`, or remove the glass");
         findings.push(Finding::from(diagnostic));
     }

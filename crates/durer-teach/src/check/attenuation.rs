@@ -23,7 +23,7 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
         let material = &description(scene_probe, light)?.value;
         let Some(point) = point(material) else {
             let color = material.color() * factor;
-            let help = format!("it is {} times too weak: try `color {}`", number(factor), vector(color));
+            let help = format!("the light is {} times too weak: try `color {}`", number(factor), vector(color));
             return Some(scene_probe.at_value(diagnostic, span, &["color"]).help(help));
         };
         // If the light's colour is plausible, the error is in the attenuation.
@@ -32,7 +32,7 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
             let reversed = Vec3::new(a.z, a.y, a.x);
             if let Some(text) = is_usual_brightness(scene_probe, light, reversed).then(|| vector(reversed)) {
-                let help = format!("the three coefficients belong to 1, d and d²: did you mean `attenuation {text}`?");
+                let help = format!("the three coefficients are those of 1, d and d²: try `attenuation {text}`");
                 return Some(diagnostic.at(value).fix(value, text).help(help));
             }
         }
@@ -52,13 +52,13 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
                 (color, Some(a)) if scene_probe.input.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
                     let text = format!(" attenuation {}", number(a.z / factor));
-                    let help = format!("the default is {} here: try `{}`", number(a.z), text.trim());
+                    let help = format!("the default `attenuation` is {} here: try `{}`", number(a.z), text.trim());
                     return Some(diagnostic.at(color).fix(after, text).help(help));
                 }
                 (color, _) => (color, vector(point.color * factor), "color".into()),
             },
         };
-        let help = format!("it is about {} times too weak: try `{field} {text}`", number(factor));
+        let help = format!("the light is about {} times too weak: try `{field} {text}`", number(factor));
         Some(diagnostic.at(value).fix(value, text).help(help))
     })
 }
@@ -96,20 +96,20 @@ pub(super) fn invalid_divisor(scene_probe: &SceneProbe) -> Vec<Finding> {
                 true => match scene_probe.field_span(span, &["attenuation", "falloff"]) {
                     Some(value) => {
                         format!(
-                            "this light divides by zero: its {} is {}",
+                            "this light is divided by zero: its {} is {}",
                             scene_probe.text(previous_word(scene_probe, value)),
                             scene_probe.text(value)
                         )
                     }
-                    None => "this light divides by zero: it has no attenuation".to_string(),
+                    None => "this light is divided by zero: it has no attenuation".to_string(),
                 },
                 false => format!("this light is divided by numbers that are not positive: {}", vector(divisor)),
             };
             let value = scene_probe.field_span(span, &["attenuation", "falloff"]);
             let diagnostic = Diagnostic::warning(message)
                 .effect(match zero {
-                    true => "its light is NaN or infinite and is left out: surfaces are black or have specks",
-                    false => "it subtracts light, or its light is NaN: surfaces are black",
+                    true => "the light is NaN or infinite and is left out, so surfaces are black or have specks",
+                    false => "the light is negative or NaN, so surfaces are black",
                 })
                 .help(match scene_probe.field_span(span, &["falloff"]) {
                     Some(_) => "write a `falloff` above 0, such as `falloff 0.05`",

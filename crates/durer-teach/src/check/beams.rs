@@ -30,8 +30,8 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - point };
         let text = vector(aimed);
         let help = format!(
-            "`direction` is the direction in which the light travels: `direction {text}` points at the center of \
-             the visible objects"
+            "write `direction {text}` to aim at the center of the visible objects; `direction` is the direction in \
+             which the light travels"
         );
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
         match scene_probe.field_span(light.span, &["direction"]) {
@@ -77,7 +77,7 @@ fn missing(
         let held = percent((1e4 * beam_coverage(scene_probe, number, &hit_points(scene_probe))) as usize, 10_000);
         let mut diagnostic = say(diagnostic.at(span), light);
         if wanted == BeamMiss::Narrow {
-            diagnostic = diagnostic.label(format!("{held} of the visible points are in its cone"));
+            diagnostic = diagnostic.label(format!("{held} of the visible points are in the cone"));
         }
         findings.push(Finding::from(diagnostic).affecting_whole_picture(none_contributes(scene_probe)));
     }
@@ -161,7 +161,7 @@ pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic =
             Diagnostic::warning(format!("this light is {} from the {}", number(near), scene_probe.object(object)))
                 .related(scene_probe.object_span(object), "this object")
-                .effect("it makes a bright spot below it and lights hardly anything else")
+                .effect("the light makes a bright spot on the object and illuminates hardly anything else")
                 .help(format!(
                     "the mean distance of the visible points is {}: move the light away from the object",
                     number(middle)

@@ -63,10 +63,10 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(i, material, _): &(u32, &Spanned<ParsedMaterial>, &Phong)| {
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it reflects no light"))
             .label(format!("on {} of the visible surfaces", percent(rays(scene_probe, *i), all)))
-            .effect("its objects are black under any light")
+            .effect("objects with this material are black under any light")
             .help(
-                "`diffuseColor` is the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
-                   is a light grey",
+                "increase `diffuseColor`, the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
+                 is a light grey",
             );
         let diagnostic = scene_probe.at_value(diagnostic, material.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).affecting_whole_picture(whole)
@@ -110,12 +110,16 @@ pub(super) fn no_bounces(scene_probe: &SceneProbe) -> Vec<Finding> {
                 super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
                 super::finding::number(settings.min_weight)
             ),
-            "lower this limit: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+            "set a lower limit, such as `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
         ),
     };
     let diagnostic = Diagnostic::warning(message)
         .at(material.span)
-        .effect(if diffuse < 0.15 { "it is black, or nearly black" } else { "only its diffuse colour is visible" })
+        .effect(if diffuse < 0.15 {
+            "the material is black, or nearly black"
+        } else {
+            "only the diffuse colour is visible"
+        })
         .help(help);
     // If the dialect's program traces no secondary rays by default, their absence is intentional.
     let hit: usize = all.iter().map(|(i, ..)| rays(scene_probe, *i)).sum();
@@ -143,12 +147,16 @@ fn switched_off(scene_probe: &SceneProbe, all: &[(u32, &Spanned<ParsedMaterial>,
             }
             // Light needs one bounce to enter an object and one to leave it.
             true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
-                format!("material {i} is glass, but the maximum depth of secondary rays is 1: light cannot leave it"),
+                format!(
+                    "material {i} is glass, but the maximum depth of secondary rays is 1, so light cannot leave the \
+                     glass"
+                ),
                 "set `--bounces 4` (in the course's programs `-bounces 4`)",
             ),
             _ => return None,
         };
-        let effect = if dark(phong) { "it is black, or nearly black" } else { "only its diffuse colour is visible" };
+        let effect =
+            if dark(phong) { "the material is black, or nearly black" } else { "only the diffuse colour is visible" };
         Some(Finding::from(Diagnostic::warning(message).at(material.span).effect(effect).help(help)))
     };
     all.iter().filter_map(say).take(1).collect()
@@ -167,10 +175,10 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
         {
             let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
                 .effect(
-                    "this year's program does not treat it as glass: it transmits no light, and reflects by \
-                         its `specularColor`",
+                    "this year's program does not treat the material as glass, so it transmits no light and reflects \
+                     by its `specularColor`",
                 )
-                .help("glass has 1.5, water 1.33; for a mirror remove `refractionIndex`");
+                .help("write 1.5 for glass or 1.33 for water; for a mirror, remove `refractionIndex`");
             findings.push(Finding::from(scene_probe.at_value(diagnostic, material.span, &fields)));
         }
         if phong.transparent.max_element() <= 0.0 {
@@ -182,8 +190,11 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"));
         let diagnostic = match ior {
             _ if phong.ior > 4.0 || phong.ior < 0.5 => diagnostic
-                .effect("no real material refracts like this, and it transmits hardly any light")
-                .help("water has 1.33, glass 1.5, diamond 2.4; the value is the index inside, with 1 outside"),
+                .effect("no real material has such an index, and this material transmits hardly any light")
+                .help(
+                    "write 1.33 for water, 1.5 for glass or 2.4 for diamond; the value is the index inside, with 1 \
+                     outside",
+                ),
             Some(_) if phong.ior < 0.95 => {
                 diagnostic.effect("light is refracted the wrong way, as in an air bubble in glass").help(format!(
                     "the value is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
@@ -198,7 +209,7 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
                         true => "light passes straight through without reflection, so the object is hardly visible",
                         false => "light passes straight through without refraction",
                     })
-                    .help("water has 1.33, glass 1.5, diamond 2.4")
+                    .help("write 1.33 for water, 1.5 for glass or 2.4 for diamond")
             }
             // An index of 1 without Fresnel reflection is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
@@ -206,7 +217,7 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
                 if scene_probe.world().rules().secondary == SecondaryRays::Colors { fields[0] } else { fields[1] }
             ))
             .effect("light passes straight through without refraction, as through foil")
-            .help("glass has 1.5, water 1.33"),
+            .help("write 1.5 for glass or 1.33 for water"),
             _ => continue,
         };
         findings.push(Finding::from(scene_probe.at_value(diagnostic, material.span, &fields)));
@@ -295,12 +306,15 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
         let message = format!("the colour {} is {}above 1", vector(color), if far { "far " } else { "" });
         let diagnostic = Diagnostic::warning(message)
             .effect(match far {
-                true => "it is white or a saturated colour under any light",
-                false => "it reflects more light than it receives: bright parts are clipped and lose their shading",
+                true => "the result is white or a saturated colour under any light",
+                false => {
+                    "the surface reflects more light than it receives, so bright parts are clipped and lose their \
+                     shading"
+                }
             })
             .help(match bytes {
                 true if percent => format!(
-                    "colours range from 0 to 1: write `{}` if this is in percent, or `{}` if it is in bytes",
+                    "colours range from 0 to 1: write `{}` if the colour is in percent, or `{}` if it is in bytes",
                     vector(color / 100.0),
                     vector(mended)
                 ),
@@ -345,10 +359,10 @@ pub(super) fn energy_gain(scene_probe: &SceneProbe) -> Option<Diagnostic> {
         too_much.max_by_key(|(i, ..)| rays(scene_probe, *i)).filter(|(i, ..)| rays(scene_probe, *i) > 0)?;
     let message = format!(
         "material {i} reflects and transmits {} times the light that it receives: its diffuse, reflected and \
-         transmitted shares add up to more than 1",
+         transmitted fractions add up to more than 1",
         super::finding::number(sum(phong))
     );
-    let diagnostic = Diagnostic::warning(message).help("reduce them until their sum is at most 1");
+    let diagnostic = Diagnostic::warning(message).help("reduce the fractions until their sum is at most 1");
     Some(scene_probe.at_value(
         diagnostic,
         material.span,
@@ -404,10 +418,10 @@ fn dull_by_color(scene_probe: &SceneProbe) -> Vec<Finding> {
             "material {i} has the index of refraction of glass, but \
                                                       transmits no light"
         ))
-        .effect("its `transparentColor` is black: its objects are dark and opaque")
+        .effect("`transparentColor` is black, so objects with this material are dark and opaque")
         .help(
-            "`transparentColor` is the fraction of light that the material transmits; for example, `0.9 0.9 \
-                   0.9` is clear",
+            "increase `transparentColor`, the fraction of light that the material transmits; for example, `0.9 0.9 \
+             0.9` is clear",
         );
         Finding::from(scene_probe.at_value(diagnostic, material.span, &["transparentColor", "indexOfRefraction"]))
     };
@@ -426,7 +440,7 @@ pub(super) fn negative(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |ColorField { color, block, fields, .. }: ColorField| {
         let mended = color.abs();
         let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
-            .effect("it subtracts light: surfaces become darker, or black")
+            .effect("a negative colour subtracts light, so surfaces become darker or black")
             .help(format!("colours range from 0 to 1: write `{}`", vector(mended)));
         let diagnostic = match scene_probe.field_span(block, &fields) {
             Some(place) => diagnostic.at(place).fix(place, vector(mended)),
@@ -462,7 +476,7 @@ pub(super) fn background_colored(scene_probe: &SceneProbe) -> Vec<Finding> {
         None => diagnostic,
     };
     let diagnostic = diagnostic.effect("no object stands out from the background").help(match black {
-        true => "nothing is lit; another background colour would at least show the outlines",
+        true => "light the objects, or choose another background colour to show at least the outlines",
         false => "choose another `color` for the background, or for the materials",
     });
     let finding = Finding::from(diagnostic);
@@ -490,8 +504,8 @@ fn lost_in_background(scene_probe: &SceneProbe, alike: &dyn Fn(Color) -> bool) -
         let diagnostic =
             Diagnostic::warning(format!("the {} has the colour of the background", scene_probe.object(number as u32)))
                 .at(scene_probe.object_span(number as u32))
-                .related(material.span, "its material")
-                .effect("it does not stand out from the background")
+                .related(material.span, "the material of the object")
+                .effect("the object does not stand out from the background")
                 .help("choose another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
@@ -512,7 +526,7 @@ pub(super) fn no_coordinates(scene_probe: &SceneProbe) -> Vec<Finding> {
                     .related(scene_probe.object_span(hit.object), "uses the material")
                     .effect("the texture is invisible; `diffuseColor` is used instead")
                     .help(match (&scene_probe.world().objects()[hit.object as usize].geometry, meshes_only) {
-                        (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces such as `f 1/1 2/2 3/3`",
+                        (Geometry::Mesh(_), _) => "add `vt` lines to the mesh file, and write faces as `f 1/1 2/2 3/3`",
                         (_, true) => {
                             "this year's program shows textures on meshes only: use a `TriangleMesh` with `vt` lines"
                         }
@@ -548,11 +562,12 @@ pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
         1 => format!("no object uses material {first}"),
         n => format!("no object uses {}: {}", counted(n, "material", "materials"), list.join(", ")),
     };
-    let diagnostic = Diagnostic::note(message).at(material[first].span).effect("it has no effect on the picture").help(
-        match scene_probe.input.dialect {
-            Dialect::F23 => "is the `index` of a `Component<Material>` wrong? Indices start at 0",
-            _ => "is a `MaterialIndex` wrong? Indices start at 0",
-        },
-    );
+    let diagnostic = Diagnostic::note(message)
+        .at(material[first].span)
+        .effect("unused materials have no effect on the picture")
+        .help(match scene_probe.input.dialect {
+            Dialect::F23 => "check the `index` of each `Component<Material>`: indices start at 0",
+            _ => "check each `MaterialIndex`: indices start at 0",
+        });
     vec![Finding::from(diagnostic)]
 }

@@ -18,11 +18,11 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
             finding.affects_whole_picture = super::lights::none_contributes(scene_probe);
             finding.diagnostic.effect = Some(match finding.affects_whole_picture {
                 true => "no light reaches the visible surfaces".into(),
-                false => "it contributes nothing to the picture".into(),
+                false => "this light contributes nothing to the picture".into(),
             });
             if let Some(value) = finding.diagnostic.span.and_then(|span| scene_probe.field_span(span, &["color"])) {
                 finding.diagnostic.span = Some(value);
-                finding.diagnostic.help.get_or_insert("white light is `color 1 1 1`".into());
+                finding.diagnostic.help.get_or_insert("for white light, write `color 1 1 1`".into());
             }
         }
         "no-falloff" => finding.affects_whole_picture = true,
@@ -31,11 +31,11 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
             finding.diagnostic.effect = Some("every ray misses, so the picture shows only the background".into());
         }
         "empty-solid" => {
-            finding.diagnostic.effect.get_or_insert("it is invisible".into());
-            finding
-                .diagnostic
-                .help
-                .get_or_insert("move its parts until they overlap: an intersection is the common part of all".into());
+            finding.diagnostic.effect.get_or_insert("the solid is invisible".into());
+            finding.diagnostic.help.get_or_insert(
+                "move the parts of the solid until they overlap: an intersection is what all parts have in common"
+                    .into(),
+            );
         }
         "foreign-word" => foreign_in_nodes(scene_probe, finding),
         "up-parallel" => up_parallel(scene_probe, finding),
@@ -55,8 +55,9 @@ fn foreign_in_nodes(scene_probe: &SceneProbe, finding: &mut Finding) {
         && finding.diagnostic.help.is_none()
         && ["center", "position"].contains(&word.as_str())
     {
-        finding.diagnostic.help =
-            Some("the `Node` around it moves it: `Node { Transform { translate 1 2 3 } ... }`".into());
+        finding.diagnostic.help = Some(
+            "move the object with the `Node` that encloses it: `Node { Transform { translate 1 2 3 } ... }`".into(),
+        );
     }
 }
 
@@ -82,7 +83,7 @@ fn no_light(scene_probe: &SceneProbe, finding: &mut Finding) {
             Dialect::F23 => {
                 "add a node, such as `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
             }
-            _ => "add some, such as `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
+            _ => "add lights: `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
         }
         .into(),
     );
@@ -117,7 +118,7 @@ fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
     let suggestion = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
     finding.diagnostic.help = Some(match count {
         1 => "material indices start at 0: write 0".into(),
-        n => format!("material indices start at 0: the last of {n} is {}", n - 1),
+        _ => format!("material indices start at 0: use 0 to {}", count - 1),
     });
     let only = count == 1 || index.parse() == Ok(count);
     if only {
@@ -135,8 +136,10 @@ fn from_one(scene_probe: &SceneProbe, finding: &mut Finding, count: usize) -> bo
     if count < 2 || uses.iter().any(|(_, index)| *index == 0) || !uses.iter().any(|(_, index)| *index == count) {
         return false;
     }
-    finding.diagnostic.help =
-        Some("material indices start at 0, but these start at 1: subtract 1 from each `MaterialIndex`".into());
+    finding.diagnostic.help = Some(
+        "material indices start at 0, but the indices in this file start at 1: subtract 1 from each `MaterialIndex`"
+            .into(),
+    );
     for (value, index) in uses {
         finding.diagnostic = finding.diagnostic.clone().fix(value, (index - 1).to_string());
     }
@@ -144,7 +147,7 @@ fn from_one(scene_probe: &SceneProbe, finding: &mut Finding, count: usize) -> bo
 }
 
 fn no_material(scene_probe: &SceneProbe, finding: &mut Finding) {
-    finding.diagnostic.effect = Some("it does not have the intended colour".into());
+    finding.diagnostic.effect = Some("the object does not have the intended colour".into());
     let scene = scene_probe.input.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
     let nodes = scene_probe.input.dialect == durer_scene::dialect::Dialect::F23;

@@ -121,8 +121,8 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
         if let (Some(value), Some(a)) = (faded, super::verdict::attenuation(light)) {
             let single = scene_probe.text(value).split_whitespace().count() == 1;
             let text = if single { number(a.z / factor) } else { vector(a / factor) };
-            let diagnostic =
-                diagnostic.help(format!("it fades too little: try `{text}` instead of `{}`", scene_probe.text(value)));
+            let diagnostic = diagnostic
+                .help(format!("the light fades too little: try `{text}` instead of `{}`", scene_probe.text(value)));
             let diagnostic = diagnostic.at(value).label("this light is too strong").fix(value, text);
             return vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())];
         }
@@ -163,7 +163,7 @@ pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
         false => diagnostic.effect("no shading is visible"),
     };
     vec![
-        Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` explains the colour of a pixel"))
+        Finding::from(diagnostic.help("run `durer explain SCENE --pixel X,Y`, which explains the colour of a pixel"))
             .only_describing(),
     ]
 }
@@ -180,7 +180,7 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let diagnostic = Diagnostic::warning(format!("the brightest value in the picture is only {}", number(most)))
         .effect("everything visible is black, or nearly black")
-        .help(format!("the scene needs about {} times as much light", number(0.8 / most.max(1e-4))));
+        .help(format!("use about {} times as much light", number(0.8 / most.max(1e-4))));
     let diagnostic = match span(scene_probe, 0) {
         Some(span) => scene_probe.at_value(diagnostic, span, &["color"]),
         None => diagnostic,
@@ -210,7 +210,8 @@ fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
                 number(factor)
             ))
         }
-        None => diagnostic.help("is a light enclosed, turned away, or too weak? Does fog absorb its light?"),
+        None => diagnostic
+            .help("check whether a light is enclosed, turned away or too weak, and whether fog absorbs its light"),
     };
     vec![Finding::from(diagnostic).only_describing()]
 }
@@ -246,6 +247,6 @@ pub(super) fn depth_range(scene_probe: &SceneProbe) -> Vec<Finding> {
             } else {
                 "the depth picture is all black or all white"
             })
-            .help(format!("to show them, set `--depth-range {fitting}` (in the course's programs `-depth {fitting}`)"));
+            .help(format!("set `--depth-range {fitting}` (in the course's programs `-depth {fitting}`)"));
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }

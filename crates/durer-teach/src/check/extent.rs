@@ -50,9 +50,9 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
         number(size)
     ))
     .effect(if empty && size < MIN_PIXELS {
-        "every ray misses them, so the picture shows only the background"
+        "every ray misses the objects, so the picture shows only the background"
     } else {
-        "they are hardly visible"
+        "the objects are hardly visible"
     });
     let (diagnostic, field) = match scene_probe.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
@@ -99,11 +99,8 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
             let degrees = camera.angle.to_degrees();
             let mut diagnostic =
                 Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
-                    .effect(format!(
-                        "less than a {}th of the scene's width is visible",
-                        number((size / larger).floor())
-                    ))
-                    .help("angles are in degrees; 30 to 60 is usual");
+                    .effect(format!("less than 1/{} of the scene's width is visible", number((size / larger).floor())))
+                    .help("use a larger angle: angles are in degrees, and 30 to 60 degrees are usual");
             if let Some(place) = scene_probe.field_span(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
                 diagnostic = diagnostic.fix(place, number(whole)).help(format!(
@@ -124,8 +121,8 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
             };
             let wanted = number(1.2 * camera.size * size / larger);
             let diagnostic = Diagnostic::warning(format!("the picture is only {} wide", number(camera.size)))
-                .effect(format!("less than a {}th of the scene's width is visible", number((size / larger).floor())))
-                .help(format!("`size {wanted}` shows the full scene"));
+                .effect(format!("less than 1/{} of the scene's width is visible", number((size / larger).floor())))
+                .help(format!("write `size {wanted}` to show the full scene"));
             let diagnostic = diagnostic.fix_at(scene_probe.field_span(span, &["size"]), wanted);
             vec![Finding::from(scene_probe.at_value(diagnostic, span, &["size"])).affecting_whole_picture(true)]
         }
@@ -148,7 +145,7 @@ fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Findi
             1 => format!("one object fills the picture, and {out} are outside it"),
             n => format!("{n} objects fill the picture, and {out} are outside it"),
         })
-        .help("30 to 60 degrees is usual: is a digit missing?");
+        .help("check whether a digit is missing: 30 to 60 degrees are usual");
     let span = scene_probe.input.scene.camera_span;
     Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
 }
@@ -258,7 +255,7 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
                 Diagnostic::warning(format!("the {} is {} wide", scene_probe.object(object), number(size)))
                     .at(scene_probe.object_span(object))
                     .effect("numbers of this size lack precision: the object is invisible, or contains everything")
-                    .help("check its size and the `Scale` around it");
+                    .help("check the size of the object and the `Scale` that encloses it");
             Finding::from(diagnostic).affecting_whole_picture(size > 1.0)
         })
         .collect();
@@ -312,14 +309,14 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         ))
         .at(scene_probe.object_span(object))
         .effect(match scene_probe.visibilities()[object as usize] {
-            Visibility::Visible if size > middle => "it hides or contains the others",
-            Visibility::Visible => "it covers hardly a pixel",
-            _ if size > middle => "it spans the entire scene, but its surface is outside the picture",
-            _ => "it is invisible",
+            Visibility::Visible if size > middle => "the object hides or contains the others",
+            Visibility::Visible => "the object covers hardly a pixel",
+            _ if size > middle => "the object spans the entire scene, but its surface is outside the picture",
+            _ => "the object is invisible",
         })
         .help(format!(
-            "its largest side is {}, but that of most objects is {}: is it in another unit, such as millimetres? \
-             Check its size and the `{}` around it",
+            "the object's largest side is {}, but that of most objects is {}: check the size and its unit (such as \
+             millimetres), and the `{}` that encloses the object",
             number(size),
             number(middle),
             scene_probe.keyword_of_grammar("Scale", "scale")
@@ -344,7 +341,7 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
     let degrees = number(angle.to_degrees().round());
     let diagnostic = Diagnostic::warning(format!("the rotation by {angle} degrees may be in radians"))
         .effect("the object is hardly rotated")
-        .help(format!("angles are in degrees: {degrees}"));
+        .help(format!("angles are in degrees: try {degrees}"));
     let value = scene_probe.field_span(span, &words).filter(|value| scene_probe.text(*value).parse() == Ok(angle));
     vec![Finding::from(match value {
         Some(value) => diagnostic.at(value).fix(value, degrees),

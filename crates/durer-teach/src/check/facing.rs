@@ -15,10 +15,10 @@ use durer_scene::shape::{Flip, Shape as _};
 pub(super) fn flip_text(flip: Flip) -> String {
     match flip {
         Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("swap `{a}` and `{b}`"),
-        Flip::Negate([normal]) => format!("negate its `{normal}`"),
+        Flip::Negate([normal]) => format!("negate `{normal}`"),
         Flip::Negate(fields) => {
             let [normal, rest] = [&fields[..1], &fields[1..]].map(|fields| fields.join("` and `"));
-            format!("negate its `{normal}` and its `{rest}`")
+            format!("negate `{normal}` and `{rest}`")
         }
     }
 }
@@ -90,9 +90,10 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |i: usize| {
         let message = format!("the {} is visible from behind", scene_probe.object(i as u32));
         if shaded {
-            let note = Diagnostic::note(message)
-                .at(scene_probe.object_span(i as u32))
-                .effect("a ray tracer that does not shade back faces, such as the course's without `-shade_back`, leaves it black");
+            let note = Diagnostic::note(message).at(scene_probe.object_span(i as u32)).effect(
+                "a ray tracer that does not shade back faces, such as the course's without `-shade_back`, \
+                 leaves the object black",
+            );
             // If the normal and offset of a plane are negated, the plane stays the same. It also
             // looks the same if back faces are shaded.
             return Finding::from(if plane(&scene_probe.world().objects()[i]).is_some() {
@@ -104,9 +105,9 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(i as u32))
             .effect(if black {
-                "its back stays black"
+                "the back of the object stays black"
             } else {
-                "its normal points away: the visible side gets no light"
+                "the normal points away, so the visible side gets no light"
             })
             .help("set `--shade-back` (in the course's programs `-shade_back`)");
         Finding::from(with_flip(scene_probe, diagnostic, i as u32)).affecting_whole_picture(backs[i] * 10 > all * 9)
@@ -141,9 +142,11 @@ fn turned_of(scene_probe: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
         ))
         .at(scene_probe.object_span(soup[0]))
         .label("the first of them")
-        .effect("a ray tracer that does not flip normals shades them as back faces, in black");
+        .effect("a ray tracer that does not flip normals shades these triangles as back faces, in black");
         let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| with_flip(scene_probe, diagnostic, i));
-        return vec![Finding::from(diagnostic.help("order their vertices counter-clockwise, as seen from outside"))];
+        return vec![Finding::from(
+            diagnostic.help("order the vertices of the triangles counter-clockwise, as seen from outside"),
+        )];
     }
     let Some(&first) = topology.reversed.first() else { return Vec::new() };
     let count = topology.reversed.len();
@@ -152,7 +155,9 @@ fn turned_of(scene_probe: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
         n => format!("{n} triangles face the opposite way from their neighbours"),
     })
     .at(scene_probe.object_span(soup[first as usize]))
-    .effect("its normal points inwards: black or wrongly lit in a ray tracer that does not flip normals");
+    .effect(
+        "triangles whose normals point inwards are black or wrongly lit in a ray tracer that does not flip normals",
+    );
     if count > 1 {
         diagnostic = diagnostic.label("the first of them");
     }

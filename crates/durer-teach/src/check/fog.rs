@@ -27,10 +27,10 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let (min, max) = (super::finding::vector(around.min), super::finding::vector(around.max));
     let diagnostic = Diagnostic::warning("this fog is outside the picture: no camera ray passes through its box")
-        .effect("it is invisible")
+        .effect("the fog is invisible")
         .help(match around.is_empty() {
             true => "move its `min` and `max` to where the camera looks".to_string(),
-            false => format!("the bounds of the objects are `min {min} max {max}`"),
+            false => format!("move the box to the objects, whose bounds are `min {min} max {max}`"),
         });
     vec![Finding::from(scene_probe.at_value(diagnostic, written.span, &["min", "max"]))]
 }

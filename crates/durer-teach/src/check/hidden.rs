@@ -47,8 +47,8 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     let turned = (is_plane && !behind).then(|| negated_offset(scene_probe, front)).flatten();
     let help = match (is_plane, behind) {
         _ if backwards => {
-            "it is behind the camera's `center`, but this camera's rays are infinite lines and hit objects behind it first: move \
-             it away, or negate its `offset`"
+            "move the object away, or negate its `offset`: the object is behind the camera's `center`, but this \
+             camera's rays are infinite lines, which hit objects behind the camera first"
         }
         _ if is_plane && turned.is_none() && !behind => {
             "the camera and the hidden objects are on different sides of the plane: move one of them"
@@ -57,8 +57,8 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
             "the camera is behind the plane, which is at p · normal = offset: move the camera, or check `offset` \
              and the direction of `normal`"
         }
-        (true, false) => "the plane is at p · normal = offset: is the sign of `offset` correct?",
-        _ => "move it, make it smaller, or move the camera",
+        (true, false) => "check the sign of `offset`: the plane is at p · normal = offset",
+        _ => "move the object, make it smaller, or move the camera",
     };
     let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
         .at(scene_probe.object_span(front))
@@ -111,10 +111,13 @@ fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scene_probe.object(front as u32)))
         .at(scene_probe.object_span(front as u32))
-        .label(format!("{} of it", percent(counts[front], scene_probe.probes.len())))
-        .effect(format!("the others are hardly visible: it covers {} of them", percent(covered, looked)))
+        .label(format!("{} of the picture", percent(counts[front], scene_probe.probes.len())))
+        .effect(format!(
+            "the other objects are hardly visible, because this object covers {} of them",
+            percent(covered, looked)
+        ))
         .help(format!(
-            "it is {} in front of the camera: move it away, make it smaller, or move the camera back",
+            "the object is {} in front of the camera: move it away, make it smaller, or move the camera back",
             number(nearest[front])
         ));
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
@@ -149,13 +152,13 @@ pub(super) fn below_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Some(front) = front else { return Vec::new() };
     let lid = ceiling(scene_probe) == Some(front);
     let what =
-        if lid { "everything, the camera too, is below the" } else { "all other objects are on the far side of the" };
+        if lid { "all objects and the camera are below the" } else { "all other objects are on the far side of the" };
     if let Some(raised) = mirrored_eye(scene_probe, front).filter(|_| !lid) {
         let pose = scene_probe.world().camera().pose();
         let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scene_probe.object(front)))
-            .related(scene_probe.object_span(front), "the other objects stand on it")
+            .related(scene_probe.object_span(front), "the plane on which the other objects stand")
             .effect("only the plane and the background are visible")
-            .help(format!("move it to the side of the objects: try `center {}`", vector(raised)));
+            .help(format!("move the camera to the side of the objects: try `center {}`", vector(raised)));
         let span = scene_probe.input.scene.camera_span;
         let value = scene_probe.field_span(span, &["center"]).filter(|_| raised != pose.center);
         let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
@@ -164,10 +167,10 @@ pub(super) fn below_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(format!("{what} {}", scene_probe.object(front)))
         .at(scene_probe.object_span(front))
         .effect(match lid {
-            true => "it acts as a ceiling, visible from its back, and blocks the light from above",
+            true => "the plane acts as a ceiling: it is visible from its back and blocks the light from above",
             false => "only the plane and the background are visible",
         })
-        .help("a plane is at p · normal = offset: check its `offset`, or the height of the objects");
+        .help("check the `offset` of the plane, which is at p · normal = offset, or the height of the objects");
     let diagnostic = match negated_offset(scene_probe, front) {
         Some((place, text)) => diagnostic.fix(place, text),
         None => diagnostic,

@@ -52,9 +52,9 @@ pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
         .effect(if alone {
             "nothing else emits light, so the picture is black"
         } else {
-            "it emits no light and is invisible"
+            "the environment emits no light and is invisible"
         })
-        .help("`environmentScale` is a factor; `environmentScale 1 1 1` leaves the environment unchanged");
+        .help("write `environmentScale 1 1 1`, which leaves the environment unchanged");
     let value = background_span(scene_probe).and_then(|block| scene_probe.field_span(block, &["environmentScale"]));
     let diagnostic = Diagnostic { span: value.or(background_span(scene_probe)), ..diagnostic.fix_at(value, "1 1 1") };
     vec![Finding::from(diagnostic).affecting_whole_picture(alone)]
@@ -90,8 +90,8 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     ))
     .effect("hardly anything except the background is visible")
     .help(match model {
-        true => "`--studio sun` lights a model from outside, and replaces its lights",
-        false => "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`",
+        true => "use `--studio sun`, which lights a model from outside and replaces its lights",
+        false => "move the light to the camera's side, add another light, or write `Background { color 0.3 0.3 0.3 }`",
     });
     let span = scene_probe.input.scene.lights.iter().flatten().next().map(|light| light.span);
     vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]

@@ -66,12 +66,15 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scene_probe.object_span(first))
             .effect("the camera looks elsewhere")
-            .help("check its position and the transforms around it");
+            .help("check the position of the object and the transforms that enclose it");
         findings.push(Finding::from(diagnostic));
     }
     if let Some(&(first, by)) = hidden.first() {
-        let more =
-            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
+        let more = match hidden.len() - 1 {
+            0 => String::new(),
+            1 => "; 1 other object is hidden too".into(),
+            n => format!("; {n} other objects are hidden too"),
+        };
         let inside = contains_center(scene_probe, by, first);
         let (a, b) = (scene_probe.object(first), scene_probe.object(by));
         let message = match inside {
@@ -80,9 +83,9 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         };
         let plane = plane(&scene_probe.world().objects()[by as usize]).is_some();
         let help = match (plane, inside) {
-            (true, _) => "it is behind the plane, which is at p · normal = offset: is the sign of `offset` correct?",
-            (false, true) => "move it outside, or move or shrink the other object",
-            (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
+            (true, _) => "check the sign of `offset`: the object is behind the plane, which is at p · normal = offset",
+            (false, true) => "move the object outside, or move or shrink the other object",
+            (false, false) => "move the object to the other side, or move the object that hides it",
         };
         // One object may hide another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
@@ -94,13 +97,15 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scene_probe.object_span(first))
-            .related(scene_probe.object_span(by), if inside { "around it" } else { "in front of it" })
-            .effect("it is invisible")
+            .related(scene_probe.object_span(by), if inside { "the enclosing object" } else { "the object in front" })
+            .effect("the object is invisible")
             .help(help);
         let diagnostic = match negative_scale(scene_probe, first) {
             Some((place, text)) => diagnostic
                 .at(place)
-                .help(format!("a negative scale, `{text}`, mirrors it through its origin: remove the sign"))
+                .help(format!(
+                    "remove the minus sign: the negative scale `{text}` mirrors the object through its origin"
+                ))
                 .fix(place, text.replace('-', "")),
             None => diagnostic,
         };
@@ -171,9 +176,9 @@ pub(super) fn tiny(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic =
             Diagnostic::warning(format!("the {} is {} pixels wide", scene_probe.object(index), number(size)))
                 .at(scene_probe.object_span(index))
-                .effect("it is invisible, or a speck")
+                .effect("the object is invisible, or only a speck")
                 .help(format!(
-                    "its largest side is {}: check its size and the `{}` around it",
+                    "the largest side of the object is {}: check its size and the `{}` that encloses it",
                     number(bounds.size().max_element()),
                     scene_probe.keyword_of_grammar("Scale", "scale")
                 ));
@@ -205,7 +210,7 @@ pub(super) fn flat_field(scene_probe: &SceneProbe) -> Vec<Finding> {
                     number(wide),
                     number(size.y)
                 ))
-                .effect("it looks flat")
+                .effect("the height field looks flat")
                 .help(format!("heights range from `min` to `max` along y: try `max {max}`"));
                 let diagnostic = diagnostic.fix_at(scene_probe.field_span(object.span, &["max"]), max);
                 findings.push(Finding::from(scene_probe.at_value(diagnostic, object.span, &["max"])));
@@ -237,7 +242,7 @@ fn uniform_height_map(scene_probe: &SceneProbe, object: &durer_scene::scene::Obj
     }
     let diagnostic = Diagnostic::warning("the height map of this landscape has the same value everywhere")
         .effect("the landscape is flat")
-        .help("dark pixels are low and bright ones high: use an image with different values");
+        .help("use an image with different values: dark pixels are low, and bright pixels are high");
     Some(Finding::from(scene_probe.at_value(diagnostic, object.span, &["picture"])))
 }
 
@@ -262,7 +267,7 @@ fn far_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         scene_probe.object(index as u32)
     ))
     .at(object.span)
-    .effect("it is invisible")
-    .help("check its position and the transforms around it");
+    .effect("the object is invisible")
+    .help("check the position of the object and the transforms that enclose it");
     vec![Finding::from(diagnostic)]
 }

@@ -60,8 +60,10 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
             _ => "the fraction of light that the material reflects",
         };
         let diagnostic = Diagnostic::warning(format!("material {number} is black: it reflects no light"))
-            .effect("its objects are black under any light")
-            .help(format!("`{word}` sets {what}; for example, `{word} 0.8 0.8 0.8` gives a light grey"));
+            .effect("objects with this material are black under any light")
+            .help(format!(
+                "increase `{word}`, which sets {what}; for example, `{word} 0.8 0.8 0.8` gives a light grey"
+            ));
         let words = [word, "baseWeight"];
         Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &words)))
     };
@@ -79,8 +81,12 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message);
         let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin {
             (color <= BLACK).then(|| {
-                let help = "`transmissionColor` is the fraction of light that the glass transmits: `1 1 1` is clear";
-                (diagnostic.effect("its colour absorbs all light: it is black").help(help), "transmissionColor")
+                let help =
+                    "increase `transmissionColor`, the fraction of light that the glass transmits; `1 1 1` is clear";
+                (
+                    diagnostic.effect("the colour of the glass absorbs all light, so the glass is black").help(help),
+                    "transmissionColor",
+                )
             })?
         } else {
             // The thickness serves as the length of a path through a round body.
@@ -89,8 +95,8 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
             (left < BLACK).then(|| {
                 let depth = number_word(thick);
                 let effect = format!(
-                    "light reaches its colour, {}, after a distance of only {}, but its objects are {} thick and \
-                     look black",
+                    "light has the `transmissionColor` {} after a distance of only {}, but objects with this material \
+                     are {} thick, so they look black",
                     vector(m.transmission_color),
                     number_word(m.transmission_depth),
                     number_word(thick)
@@ -124,12 +130,12 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
         let effect = match m.specular_ior {
             // A volume of smoke also has an index of 1, so only clear glass is reported.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
-                "light passes straight through without reflection, so its objects are invisible"
+                "light passes straight through without reflection, so objects with this material are invisible"
             }
-            ior if !(0.4..=4.5).contains(&ior) => "no real material refracts like this",
+            ior if !(0.4..=4.5).contains(&ior) => "no real material has such an index",
             _ => return None,
         };
-        let help = "water has 1.33, glass 1.5, diamond 2.4: `specularIor 1.5`";
+        let help = "write `specularIor 1.5` for glass; water has an index of 1.33, and diamond 2.4";
         let diagnostic = Diagnostic::warning(message).effect(effect).help(help);
         let diagnostic = diagnostic.fix_at(scene_probe.field_span(material.span, &["specularIor"]), "1.5");
         Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularIor"])))
@@ -144,8 +150,8 @@ pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("material {number} has the `opacity` {}", number_word(m.opacity)))
-            .effect("its objects are invisible: light passes through unchanged")
-            .help("`opacity` is the fraction of the surface that is present, from 0 to 1");
+            .effect("objects with this material are invisible: light passes through unchanged")
+            .help("increase `opacity`, the fraction of the surface that is present, from 0 to 1");
         let value = scene_probe.field_span(material.span, &["opacity"]);
         Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "1"), material.span, &["opacity"])))
     };

@@ -46,13 +46,16 @@ pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
     sorted.sort_by(f32::total_cmp);
     let middle = number(sorted[sorted.len() / 2]);
     let message = format!(
-        "nothing is in focus: the lens focuses at {}, and everything visible is at least {} away",
+        "nothing is in focus: the lens focuses at a distance of {}, and everything visible is at least {} away",
         number(camera.focus_distance),
         number(sorted[0])
     );
     let diagnostic = Diagnostic::warning(message)
         .effect(format!("every point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
-        .help(format!("`focusDistance {middle}` is the distance of most objects; a smaller `aperture` blurs less"));
+        .help(format!(
+            "write `focusDistance {middle}`, the distance of most objects, or use a smaller `aperture`, \
+             which blurs less"
+        ));
     let span = scene_probe.input.scene.camera_span;
     vec![
         Finding::from(scene_probe.at_value(diagnostic, span, &["focusDistance", "aperture"]))
@@ -76,7 +79,7 @@ pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
     sizes.sort_by(f32::total_cmp);
     let usual = number(0.02 * camera.focus_distance);
     let message = format!(
-        "the `aperture` is {}, and the lens focuses at {}",
+        "the `aperture` of {} is too large for a focus distance of {}",
         number(camera.aperture),
         number(camera.focus_distance)
     );
@@ -86,8 +89,8 @@ pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
             100.0 * sizes[sizes.len() / 2]
         ))
         .help(format!(
-            "`aperture` is the diameter of the lens in world units, not an f-number; a usual value is \
-             `aperture {usual}`"
+            "write, for example, `aperture {usual}`: `aperture` is the diameter of the lens in world units, not an \
+             f-number"
         ));
     let span = scene_probe.input.scene.camera_span;
     let diagnostic = diagnostic.fix_at(scene_probe.field_span(span, &["aperture"]), usual);
@@ -106,12 +109,15 @@ pub(super) fn film_shift(scene_probe: &SceneProbe, middle: Vec3) -> Option<Diagn
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let across = (to - forward * scene_probe.world().camera_frame().forward).length() / forward.max(1e-6);
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
-        let diagnostic = Diagnostic::warning(format!("the film shift misses everything: `{word} {}`", number(shift)))
-            .effect("the objects in front of the lens are outside the picture")
-            .help(
-                "the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
+        let diagnostic = Diagnostic::warning(format!(
+            "the film shift `{word} {}` moves everything out of the picture",
+            number(shift)
+        ))
+        .effect("the objects in front of the lens are outside the picture")
+        .help(
+            "the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
                    0 or 0.3",
-            );
+        );
         let value = scene_probe.field_span(span, &[word]);
         scene_probe.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })
@@ -179,15 +185,16 @@ pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let name = scene_probe.object(number as u32);
         let diagnostic = match orthographic {
-            true => Diagnostic::note(format!("the camera looks along the {name}"))
-                .help("from there it is at most a line: tilt the camera's `direction` towards it"),
+            true => Diagnostic::note(format!("the camera looks along the {name}")).help(
+                "tilt the camera's `direction` towards the plane, which is at most a line when seen from its side",
+            ),
             false => {
                 // This is the normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scene_probe.field_span(scene_probe.input.scene.camera_span, &["center"]);
-                Diagnostic::warning(format!("the camera is in the plane of the {name}"))
-                    .help(format!("move it to one side: try `center {raised}`"))
+                Diagnostic::warning(format!("the camera is exactly in the {name}"))
+                    .help(format!("move the camera to one side of the plane: try `center {raised}`"))
                     .fix_at(value, raised)
             }
         };
@@ -225,7 +232,7 @@ pub(super) fn far_origin(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let diagnostic = Diagnostic::warning(format!(
-        "the scene is {} from the origin, and its objects are {} wide",
+        "the scene is {} from the origin, but its objects are only {} wide",
         number(far),
         number(size)
     ))
@@ -258,7 +265,7 @@ pub(super) fn below_epsilon(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let factor = number([1e2, 1e3, 1e4, 1e5, 1e6].into_iter().find(|factor| factor * middle > 0.5).unwrap_or(1e7));
-    let diagnostic = Diagnostic::warning(format!("the objects in this scene are {} wide", number(middle)))
+    let diagnostic = Diagnostic::warning(format!("the objects in this scene are only {} wide", number(middle)))
         .effect(format!(
             "this year's program starts shadow rays and reflected rays {} from the surface, so shadows and \
              reflections are lost",

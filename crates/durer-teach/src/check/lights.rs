@@ -36,7 +36,7 @@ pub(super) fn no_contribution(scene_probe: &SceneProbe, light: usize, message: S
     let effect = match (none_contributes(scene_probe), scene_probe.world().ambient().max_element() > VISIBLE) {
         (true, false) => "no light reaches the visible surfaces: all are black",
         (true, true) => "no light reaches the visible surfaces: they show only ambient light, flat and dark",
-        (false, _) => "it contributes nothing to the picture",
+        (false, _) => "this light contributes nothing to the picture",
     };
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
@@ -65,9 +65,9 @@ fn enclosed(scene_probe: &SceneProbe) -> Vec<Finding> {
         let object = *containing_objects(scene_probe.world(), point.position).first()?;
         let span = span(scene_probe, light)?;
         let note = Diagnostic::note(format!("this light is inside the {}", scene_probe.object(object)))
-            .effect("it does not light that object, and with shadows it lights nothing else")
-            .related(scene_probe.object_span(object), "around the light")
-            .help("move one of them, unless the object represents the light");
+            .effect("the light does not illuminate that object, and with shadows it would illuminate nothing else")
+            .related(scene_probe.object_span(object), "the object around the light")
+            .help("move the light or the object, unless the object represents the light");
         Some(Finding::from(scene_probe.at_value(note, span, &["position"])))
     };
     lights.filter_map(say).collect()
@@ -88,8 +88,13 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         let above = Vec3::new(bounds.center().x, bounds.max.y + bounds.size().max_element(), bounds.center().z);
         let diagnostic = scene_probe
             .at_value(diagnostic, span, &["position"])
-            .related(scene_probe.object_span(object), "around the light");
-        Some(diagnostic.help(format!("move it out: `position {}`, for example, is above the object", vector(above))))
+            .related(scene_probe.object_span(object), "the object around the light");
+        Some(
+            diagnostic.help(format!(
+                "move the light out of the object, for example to `position {}` above it",
+                vector(above)
+            )),
+        )
     }));
     findings
 }
@@ -185,8 +190,8 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
             false => "most of the picture is black",
         })
         .help(
-            "the light is behind the visible surfaces: `direction` is the direction in which the light travels, \
-               `position` its place",
+            "change the `direction` in which the light travels, or its `position`: the light is behind the visible \
+             surfaces",
         );
     diagnostic = scene_probe.at_value(diagnostic, span, &["direction", "position"]);
     // If all lights are behind the surfaces, each `direction` probably points towards the light
@@ -236,7 +241,7 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
         .map(|(_, hit)| hit.object)
         .collect();
     let surface = most_common(&objects)?;
-    let diagnostic = diagnostic.related(scene_probe.object_span(surface), "it is parallel to this");
+    let diagnostic = diagnostic.related(scene_probe.object_span(surface), "the surface that the light grazes");
     let (probe, _) =
         scene_probe.hits().find(|(_, hit)| hit.object == surface && hit.contribution(light).is_some_and(is_grazing))?;
     let at = scene_probe.world().intersect(&probe.ray, &mut ())?;
@@ -248,8 +253,8 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scene_probe.field_span(span, &["direction"]);
             let help = format!(
-                "`direction` is the direction in which the light travels: `direction {tilted}` \
-                                reaches the surface"
+                "write `direction {tilted}` to reach the surface; `direction` is the direction in which the light \
+                 travels"
             );
             Some(scene_probe.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
         }
@@ -265,12 +270,11 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             };
             // If the light is far outside the scene, that is a separate mistake.
             if (place - eye).length() > MAX_DISTANCE * wide {
-                let help = "the light lies in the plane of that surface, and far from everything: move it nearer";
+                let help = "move the light nearer and out of the plane of the surface: it is far from everything";
                 return Some(scene_probe.at_value(diagnostic, span, &["position"]).help(help));
             }
             let value = scene_probe.field_span(span, &["position"]);
-            let help =
-                format!("the light is in the plane of that surface: raise it, for example to `position {raised}`");
+            let help = format!("raise the light out of the plane of the surface, for example to `position {raised}`");
             Some(scene_probe.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
         }
     }
@@ -318,15 +322,15 @@ pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
             None => {
                 let turned = vector(-emitter.direction()?);
                 let help = format!(
-                    "`direction` is the direction in which the light travels, not the direction to it: `direction \
-                     {turned}` lights the visible side"
+                    "write `direction {turned}` to light the visible side: `direction` is the direction in which the \
+                     light travels, not the direction to the light"
                 );
                 let fixed = diagnostic.fix_at(scene_probe.field_span(span, &["direction"]), turned);
                 scene_probe.at_value(fixed, span, &["direction"]).help(help)
             }
             Some(_) => {
                 let eye = scene_probe.world().camera().pose().center;
-                let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
+                let help = format!("move the light to the camera's side: the camera is at {}", vector(eye));
                 scene_probe.at_value(diagnostic, span, &["position"]).help(help)
             }
         };
@@ -349,10 +353,13 @@ pub(super) fn cancelled(scene_probe: &SceneProbe) -> Vec<Finding> {
         let message = "the surfaces lit by this light reflect none of its colour".to_string();
         let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
         let color = vector(scene_probe.world().lights()[light].color());
-        let help = format!("the colours of light and surface are multiplied per channel: this light is {color}");
+        let help = format!(
+            "change the colour of the light, which is {color}, or of the surfaces: the colours are multiplied per \
+             channel"
+        );
         let material = scene_probe.hits().next().map(|(_, hit)| hit.material)?;
         let diagnostic = match scene_probe.input.scene.materials.get(material as usize) {
-            Some(material) => diagnostic.related(material.span, "a material that it reaches"),
+            Some(material) => diagnostic.related(material.span, "a material that the light reaches"),
             None => diagnostic,
         };
         Some(scene_probe.at_value(diagnostic, span, &["color"]).help(help))
@@ -367,8 +374,8 @@ pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
         Some(Diagnostic::warning("this light is defined twice").at(light.span).related(first.span, "the first one"))
     });
     let say = |diagnostic: Diagnostic| {
-        let diagnostic = diagnostic.effect("its light is added twice");
-        Finding::from(with_removal(scene_probe, diagnostic.help("remove one of them")))
+        let diagnostic = diagnostic.effect("the light is added twice");
+        Finding::from(with_removal(scene_probe, diagnostic.help("remove one of the two lights")))
     };
     pairs.map(say).collect()
 }

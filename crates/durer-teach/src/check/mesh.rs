@@ -19,15 +19,15 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
     for mesh in scene_probe.meshes() {
         let (flat, all) = (&mesh.topology.degenerate, mesh.data.triangles.len());
         let Some(&first) = flat.first() else { continue };
-        let message =
-            format!("{} of {all} of `{}` have no area", counted(flat.len(), "triangle", "triangles"), mesh.name.path);
+        let count = counted(flat.len(), "triangle", "triangles");
+        let message = format!("`{}` has {count} without area, of {all} in all", mesh.name.path);
         let mut diagnostic = mesh.at_triangle(scene_probe, Diagnostic::warning(message), first);
         if (flat.len() as f32) < MAX_DEGENERATE * all as f32 {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         let diagnostic = diagnostic
-            .effect("they are invisible and leave holes in the surface")
-            .help("do two corners have the same index or position? Remove these triangles, or fix their corners");
+            .effect("triangles without area are invisible and leave holes in the surface")
+            .help("remove the triangles, or correct vertices that have the same index or position");
         findings.push(Finding::from(diagnostic).affecting_whole_picture(flat.len() == all));
     }
     findings
@@ -41,14 +41,19 @@ pub(super) fn open_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         let Topology { open, non_manifold, some_edge, .. } = &mesh.topology;
         let Some([p, q]) = some_edge.map(|edge| edge.map(vector)) else { continue };
         let what = match (open, non_manifold) {
-            (0, n) => format!("has {} with more than two triangles", counted(*n, "edge", "edges")),
-            (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
-            (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),
+            (0, n) => {
+                format!("has {} to more than two triangles", counted(*n, "edge that belongs", "edges that belong"))
+            }
+            (n, 0) => format!("is open: {} to only one triangle", counted(*n, "edge belongs", "edges belong")),
+            (n, m) => format!(
+                "is open: {} to only one triangle, {m} to more than two",
+                counted(*n, "edge belongs", "edges belong")
+            ),
         };
         let diagnostic = Diagnostic::warning(format!("the mesh `{}` is glass, but {what}", mesh.name.path))
             .at(glass.span)
-            .effect("a ray that enters through a hole never leaves: refraction is wrong behind it")
-            .help(format!("close it; one such edge goes from {p} to {q}"));
+            .effect("a ray that enters the glass through a hole never leaves it, so the refraction is wrong")
+            .help(format!("close the mesh; one such edge goes from {p} to {q}"));
         findings.push(Finding::from(diagnostic));
     }
     findings
@@ -64,12 +69,12 @@ pub(super) fn holes(scene_probe: &SceneProbe) -> Vec<Finding> {
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
             continue;
         }
-        let edges = counted(mesh.topology.open, "edge", "edges");
-        let message = format!("`{}` has holes: {edges} with one triangle only", mesh.name.path);
+        let edges = counted(mesh.topology.open, "edge belongs", "edges belong");
+        let message = format!("`{}` has holes: {edges} to only one triangle", mesh.name.path);
         let diagnostic = Diagnostic::note(message)
             .at(mesh.name.span)
-            .effect("its inside is visible through them")
-            .help("are faces missing in the file?");
+            .effect("the inside of the mesh is visible through the holes")
+            .help("check whether faces are missing in the file");
         findings.push(Finding::from(diagnostic));
     }
     findings
@@ -104,10 +109,10 @@ pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         let mut diagnostic = Diagnostic::warning(format!("this {what} is glass, but has no inside"))
             .at(object.span)
             .effect(
-                "a ray that enters it never leaves: it is refracted once, and everything behind appears to be \
-                 inside the glass",
+                "a ray that enters the glass is refracted only once, so everything behind appears to be inside the \
+                 glass",
             )
-            .help("glass needs a closed body, such as a sphere or a closed mesh; or set its index to 1");
+            .help("use a closed body, such as a sphere or a closed mesh, or set the index of refraction to 1");
         // Water surfaces are often flat on purpose.
         if *what != "triangle" && !world.rules().is_bit_compatible() {
             diagnostic.severity = durer_diag::Severity::Note;
@@ -157,7 +162,7 @@ pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
                 Diagnostic::warning(format!("the last line of `{}` does not end with a newline", mesh.name.path))
                     .at(span)
                     .related(mesh.name.span, "the mesh is used here")
-                    .effect("this year's program loses that line: a face is missing, which leaves a hole")
+                    .effect("this year's program loses the last line, so a face is missing and leaves a hole")
                     .help("end the file with a newline")
                     .fix(end, "\n");
             findings.push(Finding::from(diagnostic));
@@ -169,7 +174,8 @@ pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
                 .at(span)
                 .label("the first of them")
                 .related(mesh.name.span, "the mesh is used here")
-                .effect("this year's program uses normal i for vertex i and ignores the faces: the shading is wrong")
+                .effect("this year's program uses normal i for vertex i and ignores the normal indices of the faces, \
+                         so the shading is wrong")
                 .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or remove the `vn` lines");
             findings.push(Finding::from(diagnostic));
         }
@@ -204,14 +210,14 @@ pub(super) fn winding(scene_probe: &SceneProbe) -> Vec<Finding> {
         let (turned, all) = (&mesh.topology.reversed, mesh.data.triangles.len());
         let Some(&first) = turned.first().filter(|_| !mesh.is_negligible(turned.len())) else { continue };
         let message = format!(
-            "{} of {all} of `{}` have the opposite winding to their neighbours",
-            counted(turned.len(), "triangle", "triangles"),
-            mesh.name.path
+            "`{}` has {} whose winding is opposite to that of the neighbours, of {all} in all",
+            mesh.name.path,
+            counted(turned.len(), "triangle", "triangles")
         );
         let diagnostic = mesh
             .at_triangle(scene_probe, Diagnostic::warning(message), first)
-            .effect("their normals point to the opposite side, so patches are dark or wrongly shaded")
-            .help("swap two vertices of each of them");
+            .effect("the normals of these triangles point to the opposite side, so patches are dark or wrongly shaded")
+            .help("swap two vertices of each of these triangles");
         findings.push(Finding::from(diagnostic));
     }
     findings
@@ -232,9 +238,14 @@ pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
         let most = hit.count() * 2 > scene_probe.hits().count();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
-            .effect("a ray tracer that does not flip them shades the inner side, black; as glass it refracts light the wrong way")
-            .help(if by_file { "negate its `vn` vectors" } else { "order the vertices of its faces \
-                                                                   counter-clockwise, as seen from outside" });
+            .effect(
+                "a ray tracer that does not flip normals shows the mesh black; as glass, the mesh refracts light \
+                 the wrong way",
+            )
+            .help(match by_file {
+                true => "negate the `vn` vectors of the file",
+                false => "order the vertices of the faces counter-clockwise, as seen from outside",
+            });
         findings.push(Finding::from(diagnostic).affecting_whole_picture(most));
     }
     findings.extend(models_inside_out(scene_probe));
@@ -262,8 +273,11 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
         let most = hit * 2 > scene_probe.hits().count();
         let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scene_probe.object(index)))
             .at(scene_probe.object_span(index))
-            .effect("programs that cull back faces show its inside; as glass it refracts light the wrong way")
-            .help("order the vertices of its faces counter-clockwise, as seen from outside");
+            .effect(
+                "programs that cull back faces show the inside of the mesh; as glass, the mesh refracts light the \
+                 wrong way",
+            )
+            .help("order the vertices of the faces counter-clockwise, as seen from outside");
         // Modelling programs often leave small inverted pieces that are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
@@ -300,8 +314,8 @@ pub(super) fn file_normals(scene_probe: &SceneProbe) -> Vec<Finding> {
                 &odd_normals.opposed,
                 first,
                 "have normals that contradict the order of their vertices",
-                "they are shaded as back faces: dark, or lit from the wrong side",
-                "negate those `vn` lines, or swap two vertices of the faces",
+                "these triangles are shaded as back faces: dark, or lit from the wrong side",
+                "negate the `vn` lines of these triangles, or swap two vertices of the faces",
             );
         }
         if let Some(first) = some(&odd_normals.missing) {
@@ -309,7 +323,7 @@ pub(super) fn file_normals(scene_probe: &SceneProbe) -> Vec<Finding> {
                 &odd_normals.missing,
                 first,
                 "have no normals in the file, although others have some",
-                "they look faceted, or differ from their neighbours",
+                "triangles without normals look faceted, or differ from their neighbours",
                 "write either all faces as `f 1//1 2//2 3//3`, or none",
             );
         }
@@ -318,8 +332,8 @@ pub(super) fn file_normals(scene_probe: &SceneProbe) -> Vec<Finding> {
                 &odd_normals.zero,
                 first,
                 "have a normal of length 0",
-                "it has no direction: the shading there is wrong",
-                "a normal needs length 1",
+                "a normal of length 0 has no direction, so the shading there is wrong",
+                "give each normal a length of 1",
             );
         }
     }

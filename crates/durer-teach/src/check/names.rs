@@ -19,8 +19,8 @@ pub(super) fn unused_define(scene_probe: &SceneProbe) -> Vec<Finding> {
         let name = scene_probe.text(**span);
         let mut diagnostic = Diagnostic::note(format!("`{name}` is defined and never used"))
             .at(**span)
-            .effect("it is not in the picture: `define` only gives it a name")
-            .help(format!("write `use {name}` in the `Group` where it should appear"));
+            .effect("the object is not in the picture: `define` only gives it a name")
+            .help(format!("write `use {name}` in the `Group` where the object should appear"));
         // If none of the definitions is used, that is probably a mistake.
         if unused.len() == defined.len() {
             diagnostic.severity = Severity::Warning;

@@ -27,8 +27,8 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |object: &Object| {
         let diagnostic = Diagnostic::warning("this triangle has no area: its vertices are on one line")
             .at(object.span)
-            .effect("it is invisible")
-            .help("are two of its vertices equal?");
+            .effect("the triangle is invisible")
+            .help("check whether two vertices are equal");
         Finding::from(diagnostic).affecting_whole_picture(scene_probe.world().objects().len() == 1)
     };
     scene_probe.world().objects().iter().filter(flat).map(say).collect()
@@ -80,8 +80,8 @@ pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
         let diagnostic = Diagnostic::warning(format!("the {} is empty", scene_probe.object(object)))
             .at(scene_probe.object_span(object))
-            .effect("it is invisible")
-            .help("a subtracted part covers the whole first part, or the parts of an intersection do not overlap");
+            .effect("the solid is invisible")
+            .help("check for a subtracted part that covers the first part, and for parts that do not overlap");
         Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none())
     };
     empty_solids(scene_probe).into_iter().map(say).collect()
@@ -101,10 +101,10 @@ pub(super) fn squashed(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let what =
             if thin { format!("{} times thinner than wide", number(most / least)) } else { "almost a point".into() };
-        let diagnostic = Diagnostic::warning(format!("the transforms around this object make it {what}"))
+        let diagnostic = Diagnostic::warning(format!("the transforms that enclose this object make it {what}"))
             .at(object.span)
-            .effect("it looks like a line, or is invisible")
-            .help("check the `Scale` and `UniformScale` around it");
+            .effect("the object looks like a line, or is invisible")
+            .help("check the `Scale` and `UniformScale` that enclose the object");
         findings.push(Finding::from(diagnostic));
     }
     findings.extend(
@@ -135,7 +135,7 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
                 let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost disappear")
                     .at(object.span)
                     .effect("the solid is invisible, or the part has no effect")
-                    .help("check the `Scale` and `UniformScale` in it");
+                    .help("check the `Scale` and `UniformScale` in the part");
                 findings.push(Finding::from(diagnostic));
             }
             findings
@@ -238,12 +238,12 @@ fn coincidence(scene_probe: &SceneProbe, first: usize, second: usize) -> Finding
     .at(b)
     .related(a, "the same surface")
     .effect(match alike {
-        true => "it contributes nothing; if it is glass, refraction through it is wrong",
+        true => "the object contributes nothing; if it is glass, refraction through it is wrong",
         false => {
             "rounding decides which of the two surfaces is visible: there are specks, or only one material \
                   appears"
         }
     })
-    .help("remove or move one of them");
+    .help("remove or move one of the two objects");
     Finding::from(diagnostic)
 }

@@ -31,7 +31,7 @@ pub(super) fn thick_film(scene_probe: &SceneProbe) -> Vec<Finding> {
         let thin = number(m.thin_film_thickness / 1000.0);
         let thick = number(m.thin_film_thickness);
         let diagnostic = Diagnostic::warning(format!("the thin film on material {index} is {thick} micrometres thick"))
-            .effect("it shows no colours: only a film about as thick as a wavelength of light does")
+            .effect("the film shows no colours: only a film about as thick as a wavelength of light does")
             .help(format!("`thinFilmThickness` is in micrometres; for {thick} nm, write `thinFilmThickness {thin}`"))
             .fix_at(scene_probe.field_span(material.span, &["thinFilmThickness"]), thin);
         Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["thinFilmThickness"])))
@@ -51,7 +51,8 @@ pub(super) fn wide_scatter(scene_probe: &SceneProbe) -> Vec<Finding> {
         let message = format!("light travels {radius} in material {index} before it is scattered");
         let diagnostic = Diagnostic::warning(message)
             .effect(format!(
-                "its objects are only {} thick: light passes straight through, and the colour is not visible",
+                "objects with this material are only {} thick, so light passes straight through and the colour is not \
+                 visible",
                 number(thick)
             ))
             .help(format!("`subsurfaceRadius` is in scene units: try `subsurfaceRadius {less}`"))
@@ -108,8 +109,8 @@ pub(super) fn short_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
             .at(material.span)
             .label(format!("on {} of the visible surfaces", percent(rays, scene_probe.hits().count())))
             .effect(match glass {
-                true => "light cannot leave it: it is black, or nearly black",
-                false => "its reflections are black",
+                true => "light cannot leave the glass, so it is black or nearly black",
+                false => "the reflections are black",
             })
             .help("set `--bounces 16`, or omit `--bounces`");
         Some(Finding::from(diagnostic))

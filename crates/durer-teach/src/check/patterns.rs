@@ -78,25 +78,30 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         };
         let fine = points.iter().filter(|point| noisy(point)).count();
         let (message, effect, help) = if let Some((message, help)) = why_uniform(scene_probe, &look, &material.value) {
-            (message, "the pattern is invisible: one colour, or a few large patches", help)
+            (
+                message,
+                "the pattern is invisible because only one colour or a few large patches are in the picture",
+                help,
+            )
         } else if matches!(look, PatternSampler::Solid(PatternMaterial::Mix(_) | PatternMaterial::TwoSided(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (
                 "only one part of this pattern is in the picture".to_string(),
-                "the pattern is invisible: a single colour",
+                "the pattern is invisible because only one colour is in the picture",
                 match &material.value {
                     ParsedMaterial::Solid(PatternMaterial::Checkerboard(_), _) => {
-                        "its cells are larger than the visible scene: check the `Scale` of its `Transform`"
+                        "check the `Scale` of the `Transform`: the cells of the pattern are larger than the visible \
+                         scene"
                     }
-                    _ => "check its `frequency`, `amplitude` and `Transform`",
+                    _ => "check the `frequency`, `amplitude` and `Transform` of the pattern",
                 },
             )
         } else if fine * 10 > points.len() * 9 {
             (
                 "this pattern is finer than a pixel".to_string(),
-                "it looks like noise or averages to one colour",
-                "check the `Scale` of its `Transform`, or its `frequency`: sizes are in scene units",
+                "the pattern looks like noise or averages to one colour",
+                "check the `frequency` of the pattern, or the `Scale` of its `Transform`: sizes are in scene units",
             )
         } else {
             continue;
@@ -118,7 +123,7 @@ fn why_uniform(
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
     if let PatternMaterial::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
-        let help = "the other material is invisible: a `share` between 0 and 1 shows both";
+        let help = "use a `share` between 0 and 1 to show both materials";
         let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
         return shows_one.then_some((message, help));
     }
@@ -132,9 +137,12 @@ fn why_uniform(
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),
     };
-    let message =
-        format!("the cells of this pattern are {} wide, and all objects together {}", number(cell), number(size));
-    let help = "its cells are larger than the visible scene: check the `Scale` of its `Transform`";
+    let message = format!(
+        "the cells of this pattern are {} wide, but all objects together are only {} wide",
+        number(cell),
+        number(size)
+    );
+    let help = "check the `Scale` of the `Transform`: the cells of the pattern are larger than the visible scene";
     (cell > MAX_CELL_SIZE * size).then_some((message, help))
 }
 
@@ -153,15 +161,18 @@ pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
         let (message, help) = if scene_probe.material_rays()[number] == 0 {
             continue;
         } else if texture.is_flat() {
-            (format!("the texture of material {number} has only one colour"), "is it the right image?")
+            (
+                format!("the texture of material {number} has only one colour"),
+                "check whether the image is the right one",
+            )
         } else if let Some(object) = one_place {
             let name = scene_probe.text(object.span);
-            let message = format!("all corners of the `{name}` have the same texture coordinates");
-            (message, "the `vt` lines of its file are all equal: export its texture coordinates")
+            let message = format!("all vertices of the `{name}` have the same texture coordinates");
+            (message, "export the texture coordinates of the mesh: the `vt` lines of its file are all equal")
         } else {
             continue;
         };
-        let diagnostic = Diagnostic::warning(message).effect("its texture is invisible").help(help);
+        let diagnostic = Diagnostic::warning(message).effect("the texture is invisible").help(help);
         findings.push(Finding::from(scene_probe.at_value(diagnostic, material.span, &["texture"])));
     }
     findings

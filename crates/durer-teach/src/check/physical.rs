@@ -72,8 +72,11 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
             false => format!("nothing emits light: no object uses the emissive material {number}"),
         };
         let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
-            true => "it multiplies `emissionLuminance`; for example, `emissionColor 1 1 1` is white light",
-            false => "is a `MaterialIndex` wrong? Indices start at 0",
+            true => {
+                "change `emissionColor`, which multiplies `emissionLuminance`; for example, `emissionColor 1 1 1` \
+                 is white light"
+            }
+            false => "check each `MaterialIndex`: indices start at 0",
         });
         let diagnostic = scene_probe.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
         return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
@@ -114,7 +117,7 @@ pub(super) fn light_in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         );
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(glass))
-            .effect("paths cannot find it: it lights nothing outside")
+            .effect("paths cannot find the light, so it illuminates nothing outside the glass")
             .help("use `--integrator photons`, or replace the light by a sphere with `emissionLuminance`");
         Some(Finding::from(diagnostic))
     });
@@ -132,17 +135,21 @@ pub(super) fn without_effect(scene_probe: &SceneProbe) -> Vec<Finding> {
         let word = if m.transmission_scatter != Vec3::ZERO && m.transmission_depth == 0.0 {
             Some((
                 "transmissionScatter",
-                "nothing is scattered inside: `transmissionDepth` is 0",
+                "no light is scattered inside the object: `transmissionDepth` is 0",
                 "try `transmissionDepth 1`, the distance after which light has `transmissionColor`",
             ))
         } else if m.transmission_scatter != Vec3::ZERO && m.transmission_weight == 0.0 {
             Some((
                 "transmissionScatter",
-                "no light enters: `transmissionWeight` is 0",
+                "no light enters the object: `transmissionWeight` is 0",
                 "write `transmissionWeight 1`, or `subsurfaceWeight 1` for a translucent body",
             ))
         } else if m.subsurface_weight > 0.0 && m.transmission_weight == 1.0 {
-            Some(("subsurfaceWeight", "all light is refracted: `transmissionWeight` is 1", "remove one of them"))
+            Some((
+                "subsurfaceWeight",
+                "all light is refracted: `transmissionWeight` is 1",
+                "remove `subsurfaceWeight` or `transmissionWeight`",
+            ))
         } else {
             None
         };

@@ -44,14 +44,14 @@ pub(super) fn pow_zero(scene_probe: &SceneProbe) -> Vec<Finding> {
         let missing = phong.shininess.is_none();
         let count = scene_probe.material_rays()[i];
         let message = match missing {
-            true => format!("material {i} has a `specularColor` but no `shininess`, so that is 0"),
+            true => format!("material {i} has a `specularColor` but no `shininess`, so its shininess is 0"),
             false => format!("the `shininess` of material {i} is 0"),
         };
         let message = message.replace("specularColor", scene_probe.keyword_of_grammar("specularColor", "specular"));
         let diagnostic = Diagnostic::warning(message)
             .label(format!("on {} of the visible surfaces", percent(count, all)))
-            .effect("its highlight covers everything, which looks like chalk: 0 to the power of 0 is 1")
-            .help("add a `shininess`, such as 20; higher values are sharper");
+            .effect("the highlight covers everything and looks like chalk, because 0 to the power of 0 is 1")
+            .help("write a higher `shininess`, such as 20; higher values make the highlight sharper");
         let value = scene_probe.field_span(material.span, &["shininess"]);
         let diagnostic = match value {
             Some(value) => diagnostic.at(value).fix(value, "20"),
@@ -84,8 +84,8 @@ fn wide_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
-            .effect("its highlight covers nearly everything, which looks like chalk")
-            .help(format!("higher values are sharper, and plastic has about 20: try `{word} 20`"));
+            .effect("the highlight covers nearly everything and looks like chalk")
+            .help(format!("higher values make the highlight sharper, and plastic has about 20: try `{word} 20`"));
         let value = scene_probe.field_span(material.span, &[word]);
         Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "20"), material.span, &[word])))
     };
@@ -108,7 +108,7 @@ pub(super) fn tiny_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
-            .effect("its highlight is smaller than a pixel and invisible")
+            .effect("the highlight is smaller than a pixel and invisible")
             .help(format!("plastic has about 20, polished metal 200: try `{word} 100`"));
         let value = scene_probe.field_span(material.span, &[word]);
         Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "100"), material.span, &[word])))
@@ -131,9 +131,9 @@ pub(super) fn no_exponent(scene_probe: &SceneProbe) -> Vec<Finding> {
     };
     let say = |(i, material, _): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let diagnostic =
-            Diagnostic::warning(format!("material {i} has a `specularColor` but no `exponent`, so that is 1"))
-                .effect("its highlight covers everything, which looks like chalk")
-                .help("add an `exponent`, such as 20; higher values are sharper");
+            Diagnostic::warning(format!("material {i} has a `specularColor` but no `exponent`, so its exponent is 1"))
+                .effect("the highlight covers everything and looks like chalk")
+                .help("add an `exponent`, such as 20; higher values make the highlight sharper");
         Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularColor"]))
     };
     visible_materials(scene_probe).filter(|(.., phong)| bare(phong)).map(say).take(MAX_FINDINGS).collect()
@@ -172,7 +172,7 @@ pub(super) fn long_up(scene_probe: &SceneProbe) -> Vec<Finding> {
     let diagnostic =
         Diagnostic::warning(format!("the camera's `up` has a length of {} and is used as written", number(length)))
             .effect(format!("the picture is {word} by a factor of {}", number(how)))
-            .help(format!("normalise it: `up {unit}`"));
+            .help(format!("write the unit vector `up {unit}`"));
     let span = scene_probe.input.scene.camera_span;
     let diagnostic = match scene_probe.field_span(span, &["up"]) {
         Some(value) => diagnostic.at(value).fix(value, unit),
@@ -216,7 +216,7 @@ pub(super) fn stretched(scene_probe: &SceneProbe) -> Vec<Finding> {
     let side = job.width.max(job.height);
     let diagnostic = Diagnostic::warning(format!("the picture of {} x {} pixels is not square", job.width, job.height))
         .at(scene_probe.input.scene.camera_span)
-        .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
+        .effect(format!("this year's program stretches the picture: everything is {} times too {way}", number(ratio)))
         .help(format!(
             "set a square size, such as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
         ));
@@ -233,8 +233,8 @@ pub(super) fn quads(scene_probe: &SceneProbe) -> Vec<Finding> {
             Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three vertices"))
                 .at(face)
                 .label("the first of them")
-                .effect("this year's program reads only three vertices of each, and shows holes or stops")
-                .help("split them into triangles: `f 1 2 3 4` becomes `f 1 2 3` and `f 1 3 4`");
+                .effect("this year's program reads only three vertices of each face, and shows holes or stops")
+                .help("split such faces into triangles: `f 1 2 3 4` becomes `f 1 2 3` and `f 1 3 4`");
         Finding::from(diagnostic)
     };
     super::mesh::large_faces(scene_probe).into_iter().map(say).collect()
@@ -249,8 +249,8 @@ pub(super) fn same_parts(scene_probe: &SceneProbe) -> Vec<Finding> {
             return (noise.color1 == noise.color2 && scene_probe.material_rays()[i] > 0).then(|| {
                 let diagnostic =
                     Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
-                        .effect("the pattern is invisible: a single colour")
-                        .help("give its two `color` fields different values");
+                        .effect("the pattern is invisible because both colours are equal")
+                        .help("give the two `color` fields of the noise different values");
                 Finding::from(diagnostic.at(material.span))
             });
         }
@@ -266,8 +266,8 @@ pub(super) fn same_parts(scene_probe: &SceneProbe) -> Vec<Finding> {
         };
         let diagnostic = Diagnostic::warning(message)
             .at(material.span)
-            .effect("the pattern is invisible: a single colour")
-            .help("give its two `materialIndex` fields different materials that precede it");
+            .effect("the pattern is invisible because both parts are equal")
+            .help("give the two `materialIndex` fields of the pattern different materials that precede it");
         Some(Finding::from(diagnostic))
     };
     materials.iter().enumerate().filter_map(say).take(MAX_FINDINGS).collect()
@@ -309,18 +309,24 @@ pub(super) fn plane_normal(scene_probe: &SceneProbe) -> Vec<Finding> {
         let unit = vector(plane.normal / length);
         let diagnostic = Diagnostic::warning(format!("the normal of this plane has a length of {}", number(length)))
             .effect(match plane.offset == 0.0 {
-                true => format!("this year's program uses it as written: light is multiplied by {}", number(length)),
+                true => format!(
+                    "this year's program uses the normal as written, so light is multiplied by {}",
+                    number(length)
+                ),
                 false => format!(
-                    "the plane is at p · normal = offset: {} from the origin, not {}",
+                    "the plane is at p · normal = offset, which is {} from the origin, not {}",
                     number(plane.offset.abs() / length),
                     number(plane.offset.abs())
                 ),
             })
             .help(match counts {
                 true => {
-                    format!("normalise it: `normal {unit}`; light is multiplied by {} here", number(length))
+                    format!(
+                        "write the unit vector `normal {unit}`; otherwise, light is multiplied by {}",
+                        number(length)
+                    )
                 }
-                false => format!("normalise it: `normal {unit}`"),
+                false => format!("write the unit vector `normal {unit}`"),
             });
         // Keep the plane where it is.
         let offset = number(plane.offset / length);

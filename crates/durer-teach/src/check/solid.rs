@@ -30,9 +30,11 @@ pub(super) fn part_without_effect(scene_probe: &SceneProbe) -> Vec<Finding> {
                 for part in parts[1..].iter().filter(|part| bounds(part).is_some_and(|b| apart(&b))) {
                     let diagnostic = Diagnostic::warning("this part is subtracted from empty space")
                         .at(part.span)
-                        .related(parts[0].span, "it does not overlap this")
-                        .effect("it has no effect: it cuts no hole")
-                        .help("move it into the first part: check its position and the transforms around it");
+                        .related(parts[0].span, "subtracted from this part")
+                        .effect("the part has no effect: it cuts no hole")
+                        .help(
+                            "move the part into the first part: check its position and the transforms that enclose it",
+                        );
                     findings.push(Finding::from(diagnostic));
                 }
             }

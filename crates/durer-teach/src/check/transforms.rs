@@ -29,12 +29,13 @@ fn of(scene_probe: &SceneProbe, object: &Object) -> Option<(Span, String)> {
     let other = by(&reversed);
     if ops.len() > 1 && aims(other) {
         let words = format!(
-            "its transforms move it to {place}; in the reverse order it would be at {}, in the picture: the transform written \
-             last is applied first",
+            "the object's transforms move it to {place}; in the reverse order, they would move it to {}, in the \
+             picture (the transform written last is applied first)",
             super::finding::vector(other)
         );
         return Some((object.span, words));
     }
-    aims(local)
-        .then(|| (object.span, format!("its transforms move it to {place}; without them it would be in the picture")))
+    aims(local).then(|| {
+        (object.span, format!("the object's transforms move it to {place}; without them, it would be in the picture"))
+    })
 }

@@ -60,25 +60,27 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         let name = scene_probe.object(object);
         let outside = point_outside(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
-            .label("this point is inside it")
-            .related(scene_probe.object_span(object), "around the camera")
+            .label("this point is inside the object")
+            .related(scene_probe.object_span(object), "the object around the camera")
             .effect(match dark {
-                _ if swallowed && own * 100 < rays * 99 => "it surrounds the camera, so its inside is visible",
-                _ if walls && own * 100 < rays * 99 => "its walls are visible from behind, and that side gets no \
-                                                        light",
-                true => "it blocks the light; everything visible is in its shadow",
-                false => "only its inside is visible",
+                _ if swallowed && own * 100 < rays * 99 => "the object surrounds the camera, so its inside is visible",
+                _ if walls && own * 100 < rays * 99 => {
+                    "the walls are visible from behind, and their backs get no \
+                     light"
+                }
+                true => "the object blocks the light, so everything visible is in its shadow",
+                false => "only the inside of the object is visible",
             })
             .help(match super::extent::times_larger(scene_probe, object) {
                 Some(times) => format!(
-                    "it is {} times larger than all other objects: make it smaller, or move the camera out to `center {}`",
+                    "the object is {} times larger than all other objects: make it smaller, or move the camera out to \
+                     `center {}`",
                     number(times),
                     vector(outside)
                 ),
-                None => format!(
-                    "move the camera out of it: backwards along its direction, `center {}` is outside",
-                    vector(outside)
-                ),
+                None => {
+                    format!("move the camera backwards out of the object, for example to `center {}`", vector(outside))
+                }
             });
         let diagnostic = scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]);
         findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
@@ -173,8 +175,9 @@ pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
         let forward = world.camera_frame().forward;
         let across = off - off.dot(forward) * forward;
         let place = pose.center + across;
-        diagnostic.message += &format!(": the center of the scene is {} away from its axis", number(across.length()));
-        diagnostic = diagnostic.help(format!("{}move it to `center {}`", nearest(scene_probe), vector(place)));
+        diagnostic.message +=
+            &format!(": the center of the scene is {} away from the camera's axis", number(across.length()));
+        diagnostic = diagnostic.help(format!("{}move the camera to `center {}`", nearest(scene_probe), vector(place)));
         let diagnostic = with_field_edit(scene_probe, diagnostic, "center", place);
         return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
@@ -186,10 +189,10 @@ pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
     if turned && angle < 60.0 {
         return Vec::new();
     }
-    diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off its direction");
+    diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off the viewing direction");
     let moved = super::transforms::moved_out_of_view(scene_probe);
     let first = moved.as_ref().map_or_else(|| nearest(scene_probe), |(_, words)| words.clone() + "; or ");
-    let mut help = format!("{first}turn it: `direction {}`", vector(to));
+    let mut help = format!("{first}turn the camera: `direction {}`", vector(to));
     let as_point = pose.direction - pose.center;
     if degrees(as_point, to) < 20.0 && angle > 20.0 {
         help += "; `direction` is a direction, not the point to look at";
@@ -281,7 +284,7 @@ pub(super) fn empty_view(scene_probe: &SceneProbe) -> Vec<Finding> {
     let size = pixels(scene_probe, bounds);
     diagnostic.help = Some(match size {
         Some(size) if size < 12.0 => return Vec::new(),
-        _ => format!("{}is there a hole in the middle, or is it seen edge-on?", nearest(scene_probe)),
+        _ => format!("{}check whether the objects have a hole in the middle or are seen edge-on", nearest(scene_probe)),
     });
     vec![Finding::from(diagnostic).only_describing()]
 }
@@ -313,8 +316,11 @@ pub(super) fn plane_through(scene_probe: &SceneProbe) -> Vec<Finding> {
         let message = format!("the {} passes through the middle of most objects", scene_probe.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scene_probe.object_span(number))
-            .effect("only the parts in front of it are visible")
-            .help("a floor should be below the objects: which axis points up? Check its `normal`, its `offset` and the rotations around it");
+            .effect("only the parts in front of the plane are visible")
+            .help(
+                "check the `normal` and the `offset` of the plane and the rotations that enclose it: a floor should \
+                 be below the objects",
+            );
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
@@ -342,8 +348,8 @@ pub(super) fn upside_down(scene_probe: &SceneProbe) -> Vec<Finding> {
     let span = scene_probe.input.scene.camera_span;
     let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
         .related(scene_probe.object_span(number), "the ground")
-        .effect("objects hang from it")
-        .help(format!("`up` points to the upper edge of the picture: `up {turned}`"))
+        .effect("the objects hang from the ground")
+        .help(format!("write `up {turned}`: `up` points to the upper edge of the picture"))
         .fix_at(scene_probe.field_span(span, &["up"]), turned);
     vec![Finding::from(scene_probe.at_value(diagnostic, span, &["up"]))]
 }

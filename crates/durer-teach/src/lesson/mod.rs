@@ -158,7 +158,8 @@ fn noise(before: &LessonPicture, after: &LessonPicture) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {
         (Some(before), Some(after)) => format!(
-            " Its noise (the mean of the pixels' standard errors, clipped to white) is {} of the mean luminance; before it was {}.",
+            " The noise of the picture (the mean of the pixels' standard errors, clipped to white) is {} of the mean \
+             luminance; before, it was {}.",
             share(after),
             share(before)
         ),

@@ -88,7 +88,7 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
     };
     let cornell = of_paths("cornell-box.txt");
     assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
-    assert!(cornell.iter().all(|step| !step.uses_built_in_scene && step.effect.contains("Its noise")));
+    assert!(cornell.iter().all(|step| !step.uses_built_in_scene && step.effect.contains("The noise of the picture")));
     // Each further bounce only adds light.
     let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
     assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));

@@ -125,7 +125,7 @@ fn missing_lights_materials_and_objects_are_reported() {
         (
             text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),
             vec![
-                "scene/scene.txt:5:1 warning: this object has no material and is rendered in plain grey; 99 other objects have none either (write `MaterialIndex 0` before it)",
+                "scene/scene.txt:5:1 warning: this object has no material and is rendered in plain grey; 99 other objects have no material either (write `MaterialIndex 0` before the object)",
             ],
         ),
         (
@@ -153,7 +153,7 @@ fn flattening_transform_is_reported_at_its_object() {
     let found =
         findings("Transform { Matrix4f { 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 }\n Sphere { center 0 0 0 radius 1 } }");
     let expected =
-        "scene/scene.txt:6:2 error: the transforms around this object are singular, or their numbers overflow";
+        "scene/scene.txt:6:2 error: the transforms that enclose this object are singular, or their numbers overflow";
     assert_eq!(found, [expected]);
 }
 

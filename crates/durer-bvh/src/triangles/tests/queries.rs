@@ -127,7 +127,10 @@ fn invalid_meshes_are_refused_with_a_reason() {
     let quality = BuildQuality::Fast;
     let error = TriangleBvh::try_build(&vertices, &[[0, 1, 2], [2, 7, 0]], quality).unwrap_err();
     assert_eq!(error, BuildError::MissingVertex { triangle: 1, index: 7, vertices: 3 });
-    assert_eq!(error.to_string(), "triangle 1 refers to vertex 7, but there are 3 vertices, numbered from 0");
+    assert_eq!(
+        error.to_string(),
+        "triangle 1 has the vertex index 7, which must be less than the number of vertices, 3"
+    );
     let error = TriangleBvh::from_flat(&[0.0; 10], &[0, 1, 2], quality).unwrap_err();
     assert_eq!(error, BuildError::NotMultipleOfThree { list: "positions", len: 10 });
     let error = TriangleBvh::from_flat(&[0.0; 9], &[0, 1], quality).unwrap_err();

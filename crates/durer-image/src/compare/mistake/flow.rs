@@ -19,10 +19,10 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let is_half = |stretch: f64| (0.3..0.75).contains(&stretch.abs());
     let is_stretched = moved(stretch_x.abs().max(stretch_y.abs()));
     if !moved(right) && !moved(down) && is_half(stretch_x) && is_half(stretch_y) && stretch_x * stretch_y > 0.0 {
-        let whose = if stretch_x < 0.0 { "its" } else { "the reference's" };
+        let whose = if stretch_x < 0.0 { "the picture's" } else { "the reference's" };
         return Some(format!(
-            "{whose} rays pass through i / (n - 1) of the picture's width and height instead of the centre of pixel \
-             i, (i + 0.5) / n"
+            "{whose} rays pass through i / (n - 1) of the width and height instead of the centre of pixel i, (i + 0.5) \
+             / n"
         ));
     }
     // Other stretches come from a different camera, and the pictures alone do not show the reason.
@@ -35,7 +35,7 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let ways: Vec<String> =
         [way(right, "to the left", "to the right"), way(down, "up", "down")].into_iter().flatten().collect();
     let half = "rays do not pass through the pixel centres";
-    (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
+    (!ways.is_empty()).then(|| format!("the picture is shifted by about {}, because {half}", ways.join(" and ")))
 }
 
 /// Estimates how far edges are shifted, in pixels. Returns the shift to the right in the middle of

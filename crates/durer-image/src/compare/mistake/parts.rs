@@ -31,8 +31,8 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
         if color == Vec3::ZERO { "black everywhere".into() } else { format!("of one colour, ({r}, {g}, {b})") }
     };
     let words = match (one_color(reference), one_color(test)) {
-        (false, true) => format!("it is {}, but the reference is not", what(test.pixels[0])),
-        (true, false) => format!("the reference is {}, but it is not", what(reference.pixels[0])),
+        (false, true) => format!("the picture is {}, but the reference is not", what(test.pixels[0])),
+        (true, false) => format!("the reference is {}, but the picture is not", what(reference.pixels[0])),
         _ => return None,
     };
     Some(Finding { kind: "blank", description: words, explained: 1.0 })
@@ -68,8 +68,8 @@ fn clamped_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     // mistake.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
-    let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
-         instead)";
+    let words = "components of the normals that should be positive are 0, because negative values are clamped (take \
+                 absolute values instead)";
     (unit.iter().filter(some).count() * 20 > unit.len()).then(|| Finding {
         kind: "normals-cut-off",
         description: words.into(),
@@ -89,7 +89,7 @@ fn unnormalized_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Findin
     let unit_difference: f64 = unit.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum();
     let rest: f64 = unit.iter().map(rest).sum();
     let explained = (unit_difference - rest) / difference(samples);
-    let words = "its normals have the right directions but not unit length: they are not normalised";
+    let words = "the normals have the right directions but not unit length, because they are not normalised";
     (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", description: words.into(), explained })
 }
 
@@ -106,8 +106,8 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
             }
         }
     }
-    let words = "it differs only where channels of the reference are saturated (255): values above 1 wrap around \
-                 instead of being clamped";
+    let words = "the pictures differ only where channels of the reference are saturated (255): values above 1 wrap \
+                 around instead of being clamped";
     // A value that wraps around can end up anywhere, including at black.
     let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
     let some = samples.iter().filter(wrapped).count();
@@ -150,16 +150,17 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     });
     let is_even = sum.abs() < 0.6 * all;
     let cause = if others < SMOOTHER * own {
-        is_even
-            .then(|| "the reference is antialiased there, but it is not (samples without effect, or no filter)".into())
+        is_even.then(|| {
+            "the reference is antialiased there, but the picture is not (samples without effect, or no filter)".into()
+        })
     } else if own < SMOOTHER * others {
-        is_even.then(|| "it is antialiased there, but the reference is not (more samples, or a filter)".into())
+        is_even.then(|| "the picture is antialiased there, but the reference is not (more samples, or a filter)".into())
     } else {
         let elsewhere =
             || is_even.then(|| "samples have other positions in the pixels, or are averaged differently".into());
         flow::cause(reference, &at_edges).or_else(elsewhere)
     }?;
-    let words = format!("it differs only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
+    let words = format!("the pictures differ only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
     let is_mixed = mixed(reference, test, &at_edges) > MIXED;
     (share < 0.4 && is_mixed && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
         kind: "edges",
@@ -222,14 +223,14 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     let (kind, words, part) = if down.len() > up.len() {
         (
             "dark-speckles",
-            "dark speckles: shadow acne, from rays that hit the surface they start on (the epsilon)",
+            "dark speckles: shadow acne, from rays that hit the surface on which they start (see the epsilon)",
             down,
         )
     } else {
         ("bright-speckles", "bright speckles: noise, or rays that miss objects they should hit", up)
     };
     let explained = difference(&part) / difference(samples);
-    let words = format!("{:.1} % of it is {words}", 100.0 * share);
+    let words = format!("{:.1} % of the picture is {words}", 100.0 * share);
     (2 * alone > visible.len() && share < 0.5).then_some(Finding { kind, description: words, explained })
 }
 
@@ -238,8 +239,8 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let visible: Vec<&Sample> = samples.iter().filter(is_visible).collect();
     let alone: usize = visible.iter().map(|s| dissimilar_neighbours(reference, test, s)).sum();
     let explained = difference(&visible.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
-    let words = "it differs from pixel to pixel without a pattern: noise, from too few samples or other random \
-                 numbers";
+    let words = "the pictures differ from pixel to pixel without a pattern: noise, from too few samples or other \
+                 random numbers";
     // When the edges of a fine pattern move, the difference looks like noise, but real noise also
     // occurs away from edges.
     let smooth = visible.iter().filter(|s| !at_edge(reference, s)).count();
@@ -281,6 +282,6 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     if share > 0.75 && !fits {
         return None;
     }
-    let words = format!("{:.1} % of it is {how}{by}, and the rest is equal: {cause}", 100.0 * share);
+    let words = format!("{:.1} % of the picture is {how}{by}, and the rest is equal: {cause}", 100.0 * share);
     Some(Finding { kind, description: words, explained })
 }

@@ -163,7 +163,7 @@ fn shifted_samples() {
         samples.sum::<Vec3>() / 16.0
     };
     finds("edges", "the reference is antialiased", &smooth, &middle);
-    finds("edges", "it is antialiased", &middle, &smooth);
+    finds("edges", "the picture is antialiased", &middle, &smooth);
 }
 
 #[test]

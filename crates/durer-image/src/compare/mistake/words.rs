@@ -7,13 +7,13 @@ use super::rule::Rule;
 pub fn of(rule: &Rule) -> String {
     match *rule {
         Rule::Reoriented(orientation) => match (orientation.transpose, orientation.flip_x, orientation.flip_y) {
-            (false, true, false) => "it is mirrored left to right",
-            (false, false, true) => "it is upside down, mirrored top to bottom",
-            (false, ..) => "it is rotated by 180 degrees",
-            (true, true, false) => "it is rotated by 90 degrees clockwise",
-            (true, false, true) => "it is rotated by 90 degrees counter-clockwise",
-            (true, false, false) => "its columns and rows are swapped",
-            (true, true, true) => "its columns and rows are swapped, and both are reversed",
+            (false, true, false) => "the picture is mirrored left to right",
+            (false, false, true) => "the picture is upside down, mirrored top to bottom",
+            (false, ..) => "the picture is rotated by 180 degrees",
+            (true, true, false) => "the picture is rotated by 90 degrees clockwise",
+            (true, false, true) => "the picture is rotated by 90 degrees counter-clockwise",
+            (true, false, false) => "columns and rows are swapped",
+            (true, true, true) => "columns and rows are swapped, and both are reversed",
         }
         .into(),
         Rule::Shifted(dx, dy) => {
@@ -24,18 +24,18 @@ pub fn of(rule: &Rule) -> String {
             };
             let ways: Vec<String> =
                 [way(dx, "to the left", "to the right"), way(dy, "up", "down")].into_iter().flatten().collect();
-            format!("it is shifted by {}", ways.join(" and "))
+            format!("the picture is shifted by {}", ways.join(" and "))
         }
         Rule::Channels([2, 1, 0]) => "red and blue are swapped (BGR instead of RGB)".into(),
         Rule::Channels([0, 2, 1]) => "green and blue are swapped".into(),
         Rule::Channels([1, 0, 2]) => "red and green are swapped".into(),
         Rule::Channels(order) => {
             let [r, g, b] = order.map(|channel| ["red", "green", "blue"][channel]);
-            format!("its red, green and blue channels are the reference's {r}, {g} and {b}")
+            format!("the red, green and blue channels are the reference's {r}, {g} and {b}")
         }
-        Rule::Grey => "it is a greyscale version of the reference".into(),
+        Rule::Grey => "the picture is a greyscale version of the reference".into(),
         Rule::Inverted([true, true, true]) => {
-            "it is inverted: black and white are swapped (a reversed depth range, or negated normals)".into()
+            "the picture is inverted: black and white are swapped (a reversed depth range, or negated normals)".into()
         }
         Rule::Inverted(which) => {
             let names = ["red (x)", "green (y)", "blue (z)"];
@@ -43,45 +43,49 @@ pub fn of(rule: &Rule) -> String {
             format!("{} inverted: an axis points in the opposite direction", joined(&names))
         }
         Rule::InvertedExceptBlack => {
-            "it is inverted where the reference is not black (a reversed depth range: near and far are swapped)".into()
+            "the picture is inverted where the reference is not black (a reversed depth range: near and far are \
+             swapped)"
+                .into()
         }
-        Rule::GammaTwice => "the sRGB curve (gamma) is applied once too often: its values are too bright".into(),
-        Rule::GammaMissing => "the sRGB curve (gamma) is missing once: its values are too dark".into(),
-        Rule::Power(exponent) => format!(
-            "its values are the reference's to the power of {exponent:.2}: a different \
-                                          gamma"
-        ),
-        Rule::Factor(factor) => format!("it is {} by a factor of {factor:.3}", brightness(factor > 1.0)),
+        Rule::GammaTwice => "the sRGB curve (gamma) is applied once too often, so the values are too bright".into(),
+        Rule::GammaMissing => "the sRGB curve (gamma) is missing once, so the values are too dark".into(),
+        Rule::Power(exponent) => {
+            format!("each value is the reference's to the power of {exponent:.2}: a different gamma")
+        }
+        Rule::Factor(factor) => format!("the picture is {} by a factor of {factor:.3}", brightness(factor > 1.0)),
         Rule::LightFactor(factor) => {
-            format!("its light is {} by a factor of {factor:.3} (before the sRGB curve)", brightness(factor > 1.0))
+            format!("the light is {} by a factor of {factor:.3} (before the sRGB curve)", brightness(factor > 1.0))
         }
         Rule::Factors(factors) => {
             let [r, g, b] = factors.to_array();
-            format!("its red, green and blue channels are the reference's times {r:.3}, {g:.3} and {b:.3}")
+            format!("the red, green and blue channels are the reference's times {r:.3}, {g:.3} and {b:.3}")
         }
         Rule::Added(amount) => {
             let size = amount.abs();
-            format!("it is {} by {size:.4} ({:.1}/255) everywhere", brightness(amount > 0.0), size * 255.0)
+            format!("the picture is {} by {size:.4} ({:.1}/255) everywhere", brightness(amount > 0.0), size * 255.0)
         }
         Rule::AddedEach(amounts) => {
             let [r, g, b] = amounts.to_array();
-            format!("{r:+.4}, {g:+.4} and {b:+.4} are added to its red, green and blue channels")
+            format!("{r:+.4}, {g:+.4} and {b:+.4} are added to the red, green and blue channels")
         }
         Rule::Affine(factor, amount) if factor < 0.0 => format!(
-            "its values are {factor:.3} times the reference's {amount:+.3}: black and white are swapped, and the \
+            "each value is {factor:.3} times the reference's, plus {amount:.3}: black and white are swapped, and the \
              range differs"
         ),
         Rule::Affine(factor, amount) => {
             format!(
-                "its values are {factor:.3} times the reference's {amount:+.3}: a different range is mapped to \
+                "each value is {factor:.3} times the reference's, plus {amount:.3}: a different range is mapped to \
                  black and white"
             )
         }
         Rule::Recolored(from, to) => {
             let ([r, g, b], [r2, g2, b2]) = (bytes(from), bytes(to));
-            format!("the reference's colour ({r}, {g}, {b}), perhaps its background, is ({r2}, {g2}, {b2}) here")
+            format!(
+                "the reference's colour ({r}, {g}, {b}), perhaps its background, is ({r2}, {g2}, {b2}) in the \
+                 picture"
+            )
         }
-        Rule::Blurred => "it is blurred: each pixel is averaged with its neighbours".into(),
+        Rule::Blurred => "the picture is blurred: each pixel is averaged with its neighbours".into(),
     }
 }
 

@@ -35,7 +35,7 @@ impl Explanation {
     /// sample.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
-        let mut causes = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
+        let mut causes = vec![format!("sample {number} alone is {:.0} % of the pixel's luminance", 100.0 * share)];
         causes.extend(self.samples[number].light.iter().flat_map(cause));
         causes.push(
             "more samples make such pixels rarer, not darker; `--clamp 10` limits them but also removes some light"
@@ -80,7 +80,10 @@ fn cause(light: &Tree) -> Vec<String> {
         }
         TermKind::Emission { mis } => {
             causes.push(text("an emitter"));
-            causes.push(format!("its MIS weight is {}: light sampling finds this light even less often", number(*mis)));
+            causes.push(format!(
+                "the emitter's MIS weight is {}: light sampling finds this emitter even less often",
+                number(*mis)
+            ));
         }
         TermKind::Sky => causes.push(text("the sky")),
         TermKind::Direct { choice, pdf, mis, .. } => {
@@ -93,8 +96,8 @@ fn cause(light: &Tree) -> Vec<String> {
             ));
             if *choice < 0.1 {
                 causes.push(
-                    "the light tree estimated this light as dim, and the sample is divided by that low \
-                           probability"
+                    "the light tree considered this light dim and chose it with a low probability, by which the sample \
+                     is divided"
                         .into(),
                 );
             }
@@ -103,7 +106,8 @@ fn cause(light: &Tree) -> Vec<String> {
     }
     if let Some(seldom) = seldom.filter(|seldom| seldom.pdf < 0.05) {
         causes.push(format!(
-            "the direction sampled by {} has a density of only {} /sr: all light from there is divided by it",
+            "the direction sampled by {} has a density of only {} /sr: all light from that direction is divided by \
+             this density",
             seldom.lobe,
             number(seldom.pdf)
         ));

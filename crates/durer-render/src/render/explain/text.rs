@@ -519,9 +519,14 @@ fn shadow_line(shadow: &Shadow, names: &SceneNames) -> String {
     match shadow.share {
         share if share.equals(0.0) => format!("occluded by {object}, {t} away"),
         share if share.equals(1.0) && names.world.shading_rules().shadow_fronts => {
-            format!("{object} is {t} away, but does not block it: the ray hits its back (quirk `shadow-fronts`)")
+            format!(
+                "{object} is {t} away, but does not block the light: the shadow ray hits its back (quirk \
+                 `shadow-fronts`)"
+            )
         }
-        share if share.equals(1.0) => format!("{object} is {t} away, but does not block it: it transmits all light"),
+        share if share.equals(1.0) => {
+            format!("{object} is {t} away, but does not block the light: it transmits all of it")
+        }
         share => format!("{object}, {t} away, transmits {}", numbers(share)),
     }
 }

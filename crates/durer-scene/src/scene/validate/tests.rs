@@ -80,7 +80,7 @@ fn fields_are_checked_in_combination_if_each_is_valid() {
     let fog = |min, max| messages(&Scene { fog: Some(bare(Fog { min, max, ..Fog::default() })), ..Scene::default() });
     assert_eq!(fog(Some(Vec3::ZERO), Some(Vec3::ONE)), [""; 0]);
     assert_eq!(fog(Some(Vec3::ZERO), None), ["a box of fog needs both `min` and `max`"]);
-    assert!(fog(Some(Vec3::ONE), Some(Vec3::ZERO))[0].contains("this fog's `max`"));
+    assert!(fog(Some(Vec3::ONE), Some(Vec3::ZERO))[0].contains("the fog's `max`"));
     let background = Background { cie_sky: Some(12), ..Background::default() };
     assert!(messages(&Scene { background, ..Scene::default() })[0].contains("this `cieSky`"));
     let flat = ObjectKind::HeightField(HeightField { max: Vec3::splat(-1.0), ..HeightField::default() });
@@ -88,7 +88,7 @@ fn fields_are_checked_in_combination_if_each_is_valid() {
     let grid = VoxelGrid { max: Vec3::splat(-1.0), ..VoxelGrid::default() };
     let ball = Sphere { radius: 0.0, ..Sphere::default() };
     let found = messages(&with_node(ObjectKind::Voxels(grid, vec![ball])));
-    assert!(found.len() == 2 && found[0].contains("this grid's `max`"), "{found:?}");
+    assert!(found.len() == 2 && found[0].contains("the grid's `max`"), "{found:?}");
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn material_indices_must_exist_except_for_objects_of_files() {
         }
         scene
     };
-    assert_eq!(messages(&scene(Span::default())), ["an object has material 7, but the scene has 1, counted from 0"]);
+    assert_eq!(messages(&scene(Span::default())), ["an object has material 7, but the scene has only material 0"]);
     assert_eq!(messages(&scene(Span { file: 0, start: 3, end: 9 })), [""; 0]);
     let board = |material1, material2| Material::Solid(Checkerboard { material1, material2 }.into(), Vec::new());
     let plain = || Material::from(PhongMaterial::default());
@@ -140,13 +140,13 @@ fn lists_of_meshes_and_mappings_of_pictures_are_checked() {
         messages(&scene)
     };
     assert_eq!(found(triangle()), [""; 0]);
-    let wrong = "mesh `m`: an index is out of range: the mesh has 3 positions, counted from 0";
+    let wrong = "mesh `m`: `triangles` has an index of 3 or more, but the mesh has only 3 positions";
     assert_eq!(found(MeshData { triangles: vec![[0, 1, 3]], ..triangle() }), [wrong]);
     assert_eq!(found(MeshData { positions: vec![Vec3::NAN; 3], ..triangle() }), ["mesh `m`: positions must be finite"]);
     let uvs = MeshData { triangle_uvs: vec![[0, 1, 2]; 2], ..triangle() };
     assert_eq!(found(uvs), ["mesh `m`: `triangle_uvs` has 2 entries for 1 triangles"]);
     let normals = MeshData { triangle_normals: vec![[0, 0, 0]], ..triangle() };
-    let wrong = "mesh `m`: an index of `triangle_normals` is out of range: there are 0, counted from 0";
+    let wrong = "mesh `m`: `triangle_normals` has an index of 0 or more, but there are only 0 values";
     assert_eq!(found(normals), [wrong]);
     let colors = MeshData { colors: vec![[1.0; 4]], ..triangle() };
     assert_eq!(found(colors), ["mesh `m`: `colors` has 1 entries for 3 positions"]);

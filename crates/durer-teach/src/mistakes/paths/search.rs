@@ -171,7 +171,11 @@ fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
             times(ratio)
         )
     } else if 1.0 / ratio > NOISE_RATIO {
-        format!("the mean is correct, but the reference has {} times the variance (fewer samples)", times(1.0 / ratio))
+        format!(
+            "the mean is correct, but the noise of the reference has {} times the variance (the reference has fewer \
+             samples)",
+            times(1.0 / ratio)
+        )
     } else {
         "the difference is noise from different random numbers; no other difference can be measured".to_string()
     }

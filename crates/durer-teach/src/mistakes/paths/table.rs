@@ -58,8 +58,8 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-uniform",
         "bounces",
-        "directions {are uniform over the hemisphere, but divided by the pdf of cosine sampling|follow the BSDF, but are \
-         divided by the pdf of uniform sampling}",
+        "directions {are uniform over the hemisphere, but the light is divided by the pdf of cosine sampling|follow the \
+         BSDF, but the light is divided by the pdf of uniform sampling}",
         "uniform: pdf = 1 / (2 pi); by the cosine: pdf = cos / pi",
         "{uniform directions with pdf = cos / pi|cosine-distributed directions with pdf = 1 / (2 pi)}",
         |v, other| {

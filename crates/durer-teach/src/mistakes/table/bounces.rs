@@ -94,7 +94,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-plus",
         "reflection",
-        "the mirrored direction has a wrong sign inside",
+        "the formula of the mirrored direction has a wrong sign",
         "R = d - 2 (d.N) N",
         "R = d + 2 (d.N) N",
         |v, _| v.bugs.bounces.mirror = Mirror::Plus,
@@ -212,7 +212,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-exchanged",
         "fresnel",
-        "the mirrored and transmitted shares of glass are swapped",
+        "the mirrored and transmitted fractions of glass are swapped",
         "R * trace(R) + (1 - R) * trace(T)",
         "(1 - R) * trace(R) + R * trace(T)",
         |v, _| v.bugs.bounces.fresnel = Fresnel::Exchanged,
@@ -244,7 +244,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "exit-r0",
         "fresnel",
-        "R0 differs when a ray leaves glass",
+        "R0 of Schlick's formula differs when a ray leaves the glass",
         "R0 = ((n2 - n1) / (n2 + n1))^2 on both sides",
         "R0 = 0 on the way out",
         |v, _| v.toggle(durer_scene::dialect::Quirk::ExitR0),
@@ -276,7 +276,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "glass-white",
         "refraction",
-        "{light transmitted by glass is|light transmitted and mirrored by glass is} not multiplied by its colour",
+        "{light transmitted by glass is|light transmitted and mirrored by glass is} not multiplied by the glass's \
+         colour",
         "color += kt * trace(p, T)",
         "color += trace(p, T)",
         |v, which| {

@@ -105,7 +105,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-exchanged",
         "normals",
-        "the weights of smooth normals belong to the wrong corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
+        "the weights of smooth normals belong to the wrong vertices: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
         "N = (1 - b - c) Na + b Nb + c Nc",
         "the weights or the normals in another order",
         |v, order| v.bugs.normal_permutation = order as usize,

@@ -162,7 +162,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-two-sided",
         "specular",
-        "the highlights ignore the sign of their base: there is one on the other side too",
+        "the highlights ignore the sign of their base: there is a highlight on the opposite side too",
         "pow(max(0, base), s)",
         "pow(abs(base), s)",
         |v, _| v.bugs.highlights.two_sided = true,

@@ -141,7 +141,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "last-light-only",
         "diffuse",
-        "each light replaces the ones before it, so only the last one is visible",
+        "each light replaces the lights before it, so only the last light is visible",
         "color += ...",
         "color = ambient * kd + ...",
         |v, seen| v.bugs.sum = if seen == 0.0 { LightSum::LastOnly } else { LightSum::LastUnoccluded },

@@ -64,7 +64,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shifted",
         "rays",
-        "the picture is shifted by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, and around|down, and around|to the left, and around|to the right, and around}",
+        "the picture is shifted by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, wrapping around|down, wrapping around|to the left, wrapping around|to the right, wrapping around}",
         "rows and columns from 0",
         "rows or columns from 1",
         |v, way| {

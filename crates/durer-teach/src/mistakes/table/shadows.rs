@@ -130,7 +130,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-reach",
         "shadows",
-        "shadow rays to point lights end {at distance 1|behind the light: the ray is not normalised, and t goes to the distance}",
+        "shadow rays to point lights end {at distance 1|behind the light, because L is not normalised but t ends at \
+         the distance}",
         "occluded if hit at eps < t < distance to the light",
         "{t < 1 with L = normalize(position - p)|t < distance with L = position - p}",
         |v, squared| v.bugs.shadows.ray_end = if squared == 0.0 { ShadowRayEnd::One } else { ShadowRayEnd::Squared },
