@@ -102,8 +102,11 @@ impl Autosave {
     pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
         let (Some(saved), Some(destination)) = (self.saved.take(), &self.destination) else { return Ok(fresh) };
         let name = destination.path().display();
-        let other =
-            |error| invalid_input(format!("cannot continue `{name}`: {error}; --restart discards it and starts again"));
+        let other = |error| {
+            invalid_input(format!(
+                "cannot continue `{name}`: {error}; pass --restart to discard the file and start again"
+            ))
+        };
         fresh.same_work(&saved).map_err(other)?;
         if !self.quiet {
             print_error_line(&format!("note: continuing {name}: {} % done", percent(&saved)));
@@ -181,7 +184,7 @@ impl Autosave {
         let Some(destination) = self.destination.as_ref().filter(due) else { return Vec::new() };
         progress::saving();
         match save_part(destination, part) {
-            Ok(()) => vec![format!("{} (--resume continues it)", destination.path().display())],
+            Ok(()) => vec![format!("{} (--resume continues from this file)", destination.path().display())],
             Err(error) => {
                 self.warn_once(&error);
                 Vec::new()
@@ -193,7 +196,7 @@ impl Autosave {
     pub fn after_panic(&self, part: &PartialRender, panicked: &Panicked, command: &str) -> Failure {
         let saved = self.after_interrupt(part);
         let note = if saved.is_empty() { String::new() } else { format!("\nthe work so far is in {}", saved.join("")) };
-        Failure::Other(anyhow::anyhow!("{panicked}\nto reproduce it: {command}{note}"))
+        Failure::Other(anyhow::anyhow!("{panicked}\nto reproduce the error, run: {command}{note}"))
     }
 }
 
@@ -209,7 +212,7 @@ fn read_saved_work(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialR
     if work.restart || empty && !work.resume {
         return Ok(None);
     }
-    let restart = "--restart discards it and starts again";
+    let restart = "pass --restart to discard the file and start again";
     let part = match (read_part_of(path), work.resume) {
         (Ok(Ok(part)), true) => return Ok(Some(Box::new(part))),
         (Ok(Ok(part)), false) => part,
@@ -225,7 +228,9 @@ fn read_saved_work(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialR
         return Ok(None);
     }
     let percent = percent(&part);
-    Err(invalid_input(format!("`{name}` holds unfinished work, {percent} % done: --resume continues it, {restart}")))
+    Err(invalid_input(format!(
+        "`{name}` holds unfinished work ({percent} % done): pass --resume to continue from the file, or {restart}"
+    )))
 }
 
 fn percent(part: &PartialRender) -> u64 {

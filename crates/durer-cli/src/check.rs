@@ -31,7 +31,9 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         return Ok(());
     }
     if args.output.is_some() && args.scenes.len() > 1 {
-        return Err(invalid_input("--output takes one scene; without it, each scene is fixed in place"));
+        return Err(invalid_input(
+            "--output can be used with only one scene; without --output, each scene is fixed in place",
+        ));
     }
     let mut all = Vec::with_capacity(args.scenes.len());
     let mut unread = false;
@@ -94,7 +96,7 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Fai
 /// Describes the changes that edits make to the text.
 fn does(edits: &[Edit]) -> String {
     let one = |edit: &Edit| match edit.text.trim() {
-        "" => "removes it".to_string(),
+        "" => "removes the marked text".to_string(),
         text => format!("writes `{}`", text.replace('\n', " ")),
     };
     match edits {

@@ -168,7 +168,7 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     if needed > memory {
         let (needed, memory) = (format_bytes_up(needed), format_bytes_down(memory));
         return Err(format!(
-            "{both}: comparing them needs about {needed} of memory, but the limit is {memory}; see --memory"
+            "comparing {both} needs about {needed} of memory, but the limit is {memory}; see --memory"
         ));
     }
     let decode = |picture: &Encoded, path: &Path| {

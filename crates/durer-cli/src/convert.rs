@@ -53,8 +53,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
     if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
-        let message = format!("`.{ending}` cannot be written: a scene is written as .txt or .json");
-        return Err(invalid_input(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
+        let message = format!("`.{ending}` files cannot be written: use .txt or .json for a scene");
+        return Err(invalid_input(format!("{message}, .gltf or .glb for a model, and .ply, .obj or .stl for meshes")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // Write only the model, because the renderer adds a missing camera and lights later.
@@ -110,7 +110,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
     all.push((destination, text(&scene)));
     if let Some(options) = requested_picture(&loaded.scene.render_defaults) {
-        let message = "the file also sets the size and quality of its picture, which a scene file cannot store";
+        let message = "the input file also sets the size and quality of the picture, but a scene file cannot store \
+                       these settings";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
     let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();

@@ -58,7 +58,8 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let quiet = parsed.has("--quiet");
     let options = load_options(&parsed, program_name)?;
     parsed.check_unknown(options.dialect, quiet)?;
-    let scene = parsed.text("-input").ok_or_else(|| invalid_input("-input is missing: give the scene file"))?;
+    let scene =
+        parsed.text("-input").ok_or_else(|| invalid_input("-input is missing: pass -input with the scene file"))?;
     // Report invalid file names before the render starts.
     let mut registry = FileRegistry::default();
     let outputs = Outputs::of(&parsed, options.dialect, &mut registry)?;
@@ -197,7 +198,7 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     };
     if odd == Some(OddSize::Third) && (width < 3 || height < 3) {
         return Err(invalid_input(
-            "-filter without -jitter averages three by three pixels, but the picture is smaller",
+            "-filter without -jitter averages blocks of 3 by 3 pixels, but the picture is smaller than one block",
         ));
     }
     let depth = arguments.numbers::<f32>("-depth", 2)?;
@@ -211,7 +212,7 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > RenderSettings::MAX_BOUNCES {
-        return Err(invalid_input(format!("-bounces: must be at most {}", RenderSettings::MAX_BOUNCES)));
+        return Err(invalid_input(format!("-bounces must be at most {}", RenderSettings::MAX_BOUNCES)));
     }
     let weight = arguments
         .text("-weight")
@@ -288,7 +289,7 @@ fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure
     let radius = |name: &str| -> Result<Option<f32>, Failure> {
         let radius = arguments.number::<f32>(name)?;
         if radius.is_some_and(|r| !(0.0..=64.0).contains(&r)) {
-            return Err(invalid_input(format!("{name}: must be from 0 to 64")));
+            return Err(invalid_input(format!("{name} must be from 0 to 64")));
         }
         Ok(radius)
     };

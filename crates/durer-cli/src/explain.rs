@@ -40,7 +40,7 @@ pub struct ExplainArgs {
     #[command(flatten)]
     pub render: RenderArgs,
 
-    /// Pixel, counted from 0 at the upper left corner
+    /// Pixel to explain; column and row are counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
     /// Number of the sample to explain in full [default: the first with the largest weight]
@@ -169,7 +169,7 @@ fn subject(
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
             return light
                 .map(|light| Explained::Ray(light.into()))
-                .ok_or_else(|| invalid_input("this ray cannot be explained"));
+                .ok_or_else(|| invalid_input("the given ray cannot be explained"));
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => max_pixel(picture, |x, y| luminance_of(at(picture, x, y))),

@@ -123,9 +123,9 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
-        Ok(command) if command.frames.is_requested() => {
-            Err(invalid_input("--frames and --turntable are options of the farm: put them before the render options"))
-        }
+        Ok(command) if command.frames.is_requested() => Err(invalid_input(
+            "--frames and --turntable are options of `durer farm`: put both before the options of `durer render`",
+        )),
         Ok(_) => Ok(()),
         Err(error) => {
             let text = error.render().to_string();

@@ -80,7 +80,7 @@ impl FileRegistry {
         match is_saved_work(path) {
             false => Ok(place),
             true => Err(invalid_input(format!(
-                "{what}: `{}` holds saved work, which must not be overwritten: choose another name",
+                "{what} would overwrite `{}`, which holds saved work: choose another name",
                 path.display()
             ))),
         }
@@ -91,7 +91,7 @@ impl FileRegistry {
         self.register_removal(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
         if own && !crate::terminal::has_standard_output() {
-            return Err(anyhow::anyhow!("cannot write `{}`: it is closed", path.display()).into());
+            return Err(anyhow::anyhow!("cannot write `{}`: the stream is closed", path.display()).into());
         }
         Ok(Destination::new(path)?)
     }
@@ -132,10 +132,9 @@ pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
 
 fn both(output: &NamedFile, input: &NamedFile) -> Failure {
     let (what, path) = (output.option, output.path.display());
-    let named = if output.path == input.path { String::new() } else { format!(", as `{}`", input.path.display()) };
-    invalid_input(format!(
-        "{what}: `{path}` would be overwritten, but it is an input of this run{named}: choose another name"
-    ))
+    let named =
+        if output.path == input.path { String::new() } else { format!(", given as `{}`", input.path.display()) };
+    invalid_input(format!("{what} would overwrite `{path}`, which is an input of this run{named}: choose another name"))
 }
 
 #[cfg(test)]

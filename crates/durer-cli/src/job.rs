@@ -26,8 +26,8 @@ pub fn warn(job: &Job, world: &World) {
         let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
         let (w, h) = Raster::natural_size(camera.proportions(), (job.width, job.height));
         report::note(&Diagnostic::warning(format!(
-            "{count} {what} of {}x{} stay empty: the camera has a different aspect ratio; use `--size {w}x{h}` to \
-             match it",
+            "{count} {what} of the {}x{} picture stay empty: the camera has a different aspect ratio; use `--size \
+             {w}x{h}` to match the camera",
             job.width, job.height
         )));
     }

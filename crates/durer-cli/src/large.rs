@@ -24,7 +24,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     let refuse = |why: &str| Err(from_render_error(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
     let Some((_, format)) = target.single() else {
-        return refuse("it includes pictures other than the colour picture");
+        return refuse("the output includes pictures other than the colour picture");
     };
     if format.rows.is_none() {
         let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
@@ -104,7 +104,7 @@ pub fn render(
     match hash {
         Some(hash) if args.hash => print_line(&hash.to_string()),
         None if args.hash => {
-            return Err(invalid_input("--hash: this format stores the bottom row first; use PNG, PPM or HDR"));
+            return Err(invalid_input("--hash needs a format that stores the top row first: use PNG, PPM or HDR"));
         }
         _ => {}
     }

@@ -36,11 +36,13 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
 fn readable(path: &Path) -> Result<(), Failure> {
     // Opening a pipe would block the program.
     let compiled = match std::fs::metadata(path) {
-        Ok(metadata) if !metadata.is_file() => return Err(invalid_input(format!("{}: not a file", path.display()))),
+        Ok(metadata) if !metadata.is_file() => {
+            return Err(invalid_input(format!("`{}` is not a file", path.display())));
+        }
         Ok(_) => std::fs::File::open(path).map(drop),
         Err(error) => Err(error),
     };
-    compiled.map_err(|error| invalid_input(format!("{}: {error}", path.display())))
+    compiled.map_err(|error| invalid_input(format!("cannot open `{}`: {error}", path.display())))
 }
 
 /// Serves a lesson that a teacher has written in Markdown.
@@ -52,7 +54,7 @@ pub fn lesson(path: &Path) -> Result<(), Failure> {
 fn serve(start: SessionFiles, port: u16, open: bool) -> Result<(), Failure> {
     let page = if start.lesson.is_some() { "#/lesson" } else { "" };
     let server = Server::bind(port, start);
-    let server = server.map_err(|error| invalid_input(format!("port {port}: {error}")))?;
+    let server = server.map_err(|error| invalid_input(format!("cannot listen on port {port}: {error}")))?;
     let address = format!("{}{page}", server.address().map_err(anyhow::Error::from)?);
     print_line(&format!("{address}\nPress Ctrl-C to stop"));
     if open {

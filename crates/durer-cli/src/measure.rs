@@ -28,11 +28,12 @@ use std::path::PathBuf;
   durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
 
 A grid is given by a corner, two edges that start at the corner, and the number of points along each edge. The points are
-the centers of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
+the centres of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
 product of its second and first edges.
 Illuminance is in lux if the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and in Radiance scenes. Irradiance has
 one value per colour channel. Light that arrives from behind the normal is ignored. The standard errors assume independent
-samples, so the actual errors are smaller. Lights that only BSDF sampling can find, for example in mirrors, increase them.")]
+samples, so the actual errors are smaller. Lights that only BSDF sampling can find, for example in mirrors, increase the
+standard errors.")]
 pub struct MeasureArgs {
     /// Scene or model file
     pub scene: PathBuf,
@@ -179,7 +180,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         && let Some(point) = in_the_air(&compiled.world, &points)
     {
         let message = format!(
-            "photons are stored on surfaces, but {} is not on one: light from mirrors and glass would be missing",
+            "photons are stored on surfaces, but {} is not on a surface: light from mirrors and glass would be missing",
             vector_of(point)
         );
         return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
@@ -208,9 +209,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         print_line(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     if missed {
-        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the \
-                       errors include the effect of one more such sample; use more `--samples` or `--integrator \
-                       photons`";
+        let message = "some lights (in mirrors or glass, on solids, or textured) are found only by BSDF sampling: the \
+                       errors include the effect of one more sample of such a light; use more `--samples` or \
+                       `--integrator photons`";
         report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
     }
     Ok(())

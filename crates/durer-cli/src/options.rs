@@ -69,7 +69,7 @@ pub struct RenderArgs {
     /// Print the film's hash as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Print timings, ray counts and the share of time spent in ray traversal to standard error
+    /// Print timings, ray counts and the fraction of time spent in ray traversal to standard error
     #[arg(long)]
     pub stats: bool,
     /// Print only errors

@@ -80,8 +80,8 @@ fn cause(world: &World) -> Option<String> {
     };
     if let Some(number) = world.lights().iter().position(divides) {
         let why = match &world.lights()[number] {
-            Light::Point(_) => "light {} divides by its falloff, which is missing or 0",
-            _ => "light {} divides by the length of its direction, which is 0 0 0",
+            Light::Point(_) => "the intensity of light {} is divided by its falloff, which is missing or 0",
+            _ => "the intensity of light {} is divided by the length of its direction, which is 0",
         };
         return Some(why.replace("{}", &number.to_string()));
     }
@@ -95,7 +95,7 @@ fn cause(world: &World) -> Option<String> {
     let highlights = |material: &Material| matches!(material, Material::Phong(phong) if phong.highlight.is_some());
     let has_highlight = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
     let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && has_highlight(object.material));
-    is_long.then(|| "the normal of a plane is longer than 1, so its highlight overflows".into())
+    is_long.then(|| "the normal of a plane is longer than 1, so the highlight on the plane overflows".into())
 }
 
 /// Returns the failure for a scene file that cannot be read.

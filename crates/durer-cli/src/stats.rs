@@ -45,14 +45,14 @@ impl StageTimer {
         if let Some(Profile { samples, rays, time, intersection_time }) =
             profile(world, part.job(), SAMPLES).map_err(from_render_error)?
         {
-            print_error_line(&format!("{samples} samples repeated on one thread"));
+            print_error_line(&format!("{samples} samples rendered again on one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
                 print_error_line(&format!("  {count:>12}  {name} rays"));
             }
             let per_sample = time.as_secs_f64() * 1e9 / samples.max(1) as f64;
             print_error_line(&format!("  {per_sample:>12.0}  ns per sample"));
             let share = 100.0 * intersection_time.as_secs_f64() / time.as_secs_f64().max(1e-9);
-            print_error_line(&format!("  {share:>12.0}  % of that in ray traversal"));
+            print_error_line(&format!("  {share:>12.0}  % of the time in ray traversal"));
         }
         Ok(())
     }

@@ -50,7 +50,7 @@ pub fn has_standard_output() -> bool {
 pub fn print_line(line: &str) {
     let written = match has_standard_output() {
         true => writeln!(std::io::stdout(), "{line}"),
-        false => Err(std::io::Error::other("it is closed")),
+        false => Err(std::io::Error::other("the stream is closed")),
     };
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

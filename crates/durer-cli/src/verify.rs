@@ -111,12 +111,12 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let levels = simd_levels();
     for level in levels.iter().filter(|level| **level != SimdLevel::chosen().name()) {
         if hash_at(level).with_context(|| format!("cannot render with DURER_SIMD={level}"))? != hash {
-            return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
+            return Err(Failure::Other(anyhow::anyhow!("the film rendered with DURER_SIMD={level} differs")));
         }
     }
     if !args.quiet {
         print_line(&format!(
-            "{} ways, structures {}, instructions {}: one hash",
+            "{} ways, structures {}, instructions {}: all films have the same hash",
             args.trials,
             STRUCTURES.map(|s| s.0).join(", "),
             levels.join(", ")

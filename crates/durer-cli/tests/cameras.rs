@@ -82,7 +82,7 @@ fn pictures_have_the_aspect_ratio_of_their_cameras() {
     // pixels.
     folder.write("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
     let output = folder.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
-    assert!(output.contains("20 rows of 40x40 stay empty") && output.contains("--size 56x28"), "{output}");
+    assert!(output.contains("20 rows of the 40x40 picture stay empty") && output.contains("--size 56x28"), "{output}");
     let (_, square) = targa(&folder, "a.tga");
     let output = folder.expect_exit(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
     assert!(!output.contains("empty"), "{output}");

@@ -154,7 +154,11 @@ fn fixing_in_place_reports_the_changes() {
     assert_ne!(output.code, Some(0));
     assert!(output.err.contains("does not exist"), "{}", output.err);
     assert_eq!(folder.bytes("extra-brace.txt"), before);
-    folder.expect_failure(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
+    folder.expect_failure(
+        2,
+        "check extra-brace.txt scene.txt --fix -o one.txt",
+        &["--output can be used with only one scene"],
+    );
 }
 
 #[test]

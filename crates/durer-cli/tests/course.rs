@@ -314,7 +314,7 @@ fn nan_light_is_reported_with_its_pixel_and_cause() {
     let output = folder.expect_exit(0, "course --dialect f16 -input bulb.txt -size 9 9 -output o.png");
     let text = output.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", output.err));
     assert!(
-        text.contains("the first in pixel ") && text.contains("light 0 divides by its falloff, which is missing"),
+        text.contains("the first in pixel ") && text.contains("light 0 is divided by its falloff, which is missing"),
         "{text}"
     );
 }
@@ -349,7 +349,7 @@ fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
     folder.expect_failure(
         2,
         "course --dialect f12a5 -input plain.txt -size 2 2 -filter -output o.bmp",
-        &["three by three"],
+        &["blocks of 3 by 3"],
     );
 }
 

@@ -28,7 +28,7 @@ fn lesson_folder_has_page_text_and_pictures() {
         text.matches("](").count(),
         text.matches(".png)").count() + text.matches(".svg)").count() + 1 + { text.matches("(our-scene.txt)").count() }
     );
-    assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
+    assert!(text.contains("> scene.txt cannot show this step: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture is the same as the one that `render` writes.
     folder.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));

@@ -134,7 +134,7 @@ fn pipes_and_devices_that_are_named_are_refused() {
     ] {
         refused(&folder, line, "is not a regular file");
     }
-    refused(&folder, "live pipe.txt", "not a file");
+    refused(&folder, "live pipe.txt", "is not a file");
     // A folder of pictures may contain files of any kind.
     std::fs::create_dir(folder.path("one")).unwrap();
     std::fs::create_dir(folder.path("two")).unwrap();

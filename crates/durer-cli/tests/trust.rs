@@ -171,7 +171,7 @@ fn no_input_is_overwritten() {
         let before = ["scene.txt", "p.png", "m.obj"].map(|name| folder.bytes(name));
         let names = folder.names();
         let result = folder.expect_exit(2, &line);
-        assert!(result.err.contains("it is an input of this run"), "{line}: {}", result.err);
+        assert!(result.err.contains("is an input of this run"), "{line}: {}", result.err);
         assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| folder.bytes(name)), "{line}");
         assert_eq!(folder.names(), names, "{line}");
     }
@@ -181,7 +181,7 @@ fn no_input_is_overwritten() {
     folder.expect_failure(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
     // This part file has a name like that of a picture.
     folder.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
-    folder.expect_failure(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
+    folder.expect_failure(2, "merge part.png -o here/part.png", &["is an input of this run"]);
     // Saved work never overwrites other files.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
@@ -215,7 +215,7 @@ fn lesson_replaces_no_file_of_its_scene() {
     let before = folder.bytes(&format!("lesson/{picture}"));
     let output =
         folder.expect_exit(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
-    assert!(output.err.contains("it is an input of this run"), "{}", output.err);
+    assert!(output.err.contains("is an input of this run"), "{}", output.err);
     assert!(folder.bytes(&format!("lesson/{picture}")) == before);
 }
 
@@ -318,7 +318,7 @@ fn system_limits_are_named_errors() {
     ] {
         let output = folder.shell(line);
         assert_eq!(output.code, Some(code), "{line}: {}", output.err);
-        assert_eq!(output.err.contains("it is closed"), code == 1, "{line}: {}", output.err);
+        assert_eq!(output.err.contains("the stream is closed"), code == 1, "{line}: {}", output.err);
     }
 }
 

@@ -45,7 +45,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
         Err(error) => return Err(error),
     };
     if !head.is_local() {
-        return send(stream, "403 Forbidden", "text/plain", b"this server only answers pages from localhost\n");
+        return send(stream, "403 Forbidden", "text/plain", b"this server answers only pages from localhost\n");
     }
     let Some(path) = head.path_after_token(&shared.token) else {
         return send(stream, "404 Not Found", "text/plain", b"not found\n");

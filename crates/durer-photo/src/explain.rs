@@ -16,12 +16,12 @@ pub fn point(reconstruction: &Reconstruction, number: usize) -> Result<String, E
     let angle = reconstruction.max_ray_angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
     match point.track.len() {
-        0 => text.push_str("the file has no observations of it\n"),
+        0 => text.push_str("the file has no observations of this point\n"),
         count => {
             let _ =
                 writeln!(text, "seen in {count} photographs; the widest angle between two rays is {angle:.2} degrees");
             if angle < 1.0 {
-                text.push_str("the rays are nearly parallel, so its distance is uncertain\n");
+                text.push_str("the rays are nearly parallel, so the distance of the point is uncertain\n");
             }
         }
     }
@@ -35,10 +35,10 @@ pub fn point(reconstruction: &Reconstruction, number: usize) -> Result<String, E
             "  ray        from ({:.6}, {:.6}, {:.6}) along ({:.6}, {:.6}, {:.6})",
             c.x, c.y, c.z, d.x, d.y, d.z
         );
-        let _ = writeln!(text, "  distance   {:.6}, {:.6} of it along the view", (p - c).norm(), pose.depth(&p));
+        let _ = writeln!(text, "  distance   {:.6}; along the viewing direction {:.6}", (p - c).norm(), pose.depth(&p));
         let pixel = observation.pixel + residual;
-        let _ = writeln!(text, "  should be  ({:.3}, {:.3})", pixel.x, pixel.y);
-        let _ = writeln!(text, "  is         ({:.3}, {:.3})", observation.pixel.x, observation.pixel.y);
+        let _ = writeln!(text, "  projected  ({:.3}, {:.3})", pixel.x, pixel.y);
+        let _ = writeln!(text, "  observed   ({:.3}, {:.3})", observation.pixel.x, observation.pixel.y);
         let _ = writeln!(text, "  residual   ({:.3}, {:.3}), {:.3} pixels", residual.x, residual.y, residual.norm());
     }
     Ok(text)
@@ -101,14 +101,15 @@ pub fn camera(reconstruction: &Reconstruction, view: usize) -> Result<String, Er
                 let (z, off) = (p.z, at - observed);
                 let _ = writeln!(
                     text,
-                    "  {axis}: {middle:.1} + {focal:.3} * {r:.6} * {along:.4} / {z:.4} = {at:.3}, seen at {observed:.3}: {off:+.3}"
+                    "  {axis}: {middle:.1} + {focal:.3} * {r:.6} * {along:.4} / {z:.4} = {at:.3}, observed \
+                     {observed:.3}, residual {off:+.3}"
                 );
             }
         }
         squares.push((residual.norm_squared(), i));
     }
     if squares.is_empty() {
-        text.push_str("the file has no observations of it\n");
+        text.push_str("the file has no observations in this photograph\n");
         return Ok(text);
     }
     let count = squares.len();
@@ -124,11 +125,11 @@ pub fn camera(reconstruction: &Reconstruction, view: usize) -> Result<String, Er
     if count < 6 {
         text.push_str("fewer than six points do not determine the camera (DLT has eleven unknowns)\n");
     } else if third <= 1e-3 * first {
-        text.push_str("these points lie in a plane, so DLT has no unique solution\n");
+        text.push_str("the points lie in a plane, so DLT has no unique solution\n");
     }
     match covariance(reconstruction, &Options::default()) {
         Err(error) => {
-            let _ = writeln!(text, "its uncertainty cannot be computed: {error}");
+            let _ = writeln!(text, "the uncertainty of the camera cannot be computed: {error}");
         }
         Ok(covariance) => {
             if let (Some(deviation), Some(pose_covariance)) =

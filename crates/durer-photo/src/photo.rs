@@ -34,7 +34,7 @@ fn reader<'b>(file: &str, bytes: &'b [u8]) -> Result<ImageReader<Cursor<&'b [u8]
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
     let mut reader = reader.map_err(|error| Error::in_file(file, error.to_string()))?;
     if reader.format().is_none() {
-        return Err(Error::in_file(file, "this is neither a JPEG nor a PNG"));
+        return Err(Error::in_file(file, "the file is neither a JPEG nor a PNG"));
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(2 << 30);

@@ -68,12 +68,13 @@ pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection,
     }
     let [first, second, third] = principal_deviations(&points);
     if second <= MIN_THICKNESS * first {
-        return Err(Error::new("these points lie on a line: the camera could be anywhere around it"));
+        return Err(Error::new("the points lie on a line: the camera could be anywhere around that line"));
     }
     let flat = third <= MIN_THICKNESS * first;
     if flat && known.focal.is_none() {
         return Err(Error::new(
-            "these points lie in a plane, so DLT has no unique solution: pass the focal length, or points outside the plane",
+            "the points lie in a plane, so DLT has no unique solution: pass the focal length, or points outside the \
+             plane",
         ));
     }
     let side = f64::from(known.size[0].max(known.size[1]));
@@ -104,13 +105,13 @@ pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection,
     let best = best.filter(enough).ok_or_else(|| {
         let limit = known.threshold;
         Error::new(format!(
-            "no camera sees these points at these pixels: fewer than two thirds agree within {limit} pixels. X Y Z are right-handed; \
-             u counts from the left, and v from the top"
+            "no camera sees the points at the given pixels: fewer than two thirds of the points agree within {limit} \
+             pixels. X Y Z are right-handed; u is measured from the left, and v from the top"
         ))
     })?;
     if best.conditioning < MIN_CONDITIONING {
         return Err(Error::new(
-            "these points do not determine the camera: another focal length and distance fit nearly as well",
+            "the points do not determine the camera: another focal length and distance fit nearly as well",
         ));
     }
     Ok(best)
@@ -205,7 +206,9 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let size = f64::from(known.size[0].max(known.size[1]));
     let [one, two] = known.axes;
     if one.index == two.index {
-        return Err(Error::new("both sets of lines have the same axis: they must be perpendicular in the world"));
+        return Err(Error::new(
+            "both sets of lines have the same axis, but the two axes must be perpendicular in the world",
+        ));
     }
     let mut points = Vec::new();
     for lines in &known.lines {
@@ -214,8 +217,8 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
         })?;
         if v.z.abs() * 1e4 * size < v.xy().norm() {
             return Err(Error::new(
-                "lines that are parallel in the world are parallel in the picture too: their vanishing point is infinitely far, and \
-                 the focal length is undetermined",
+                "lines that are parallel in the world are parallel in the picture too: their vanishing point is at \
+                 infinity, so the focal length is undetermined",
             ));
         }
         points.push(v.xy() / v.z - known.center);
@@ -223,7 +226,8 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let square = -points[0].dot(&points[1]);
     if square <= 1e-6 * size * size {
         return Err(Error::new(
-            "no camera has these vanishing points: seen from the principal point, they must be more than a right angle apart",
+            "no camera has these vanishing points: the angle between the points, seen from the principal point, must \
+             be more than 90 degrees",
         ));
     }
     let focal = square.sqrt();

@@ -253,13 +253,13 @@ fn ply_and_gltf_errors_name_the_fault() {
     };
     let cloud = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
     for (old, new, wanted) in [
-        ("ply", "plx", ": this is not a PLY file"),
-        ("end_header", "comment end_header", ": this is not a PLY file"),
+        ("ply", "plx", ": the file is not a PLY file"),
+        ("end_header", "comment end_header", ": the file is not a PLY file"),
         ("ascii", "utf8", ":2:1: `utf8` is not a PLY format"),
         ("vertex 1", "vertex 99999999999", ":3:16: the file is too short for 99999999999 points: 6 bytes follow"),
         ("vertex 1", "vertex -1", ":3:16: expected a number of points, found `-1`"),
         ("vertex 1", "vertices 1", ":3:1: the element `vertex` must come before `vertices`"),
-        ("float z", "float w", ":3:16: these points have no x, y and z"),
+        ("float z", "float w", ":3:16: the points need the properties x, y and z"),
         ("float z", "list uchar int z", ":6:10: `list` is not a number type"),
         ("1 2 3", "1 2", ":8:4: the row ends where z should follow"),
         ("1 2 3", "1 2 x", ":8:5: expected z, found `x`"),
@@ -278,18 +278,14 @@ fn ply_and_gltf_errors_name_the_fault() {
         ("\"camera\": 0", "\"camera\": 1", ": node 0: camera 1 does not exist"),
         ("\"mesh\": 0", "\"mesh\": 1", ": node 2: mesh 1 does not exist"),
         ("[2, 2, 2]", "[2, 2, -2]", ": node 0: a camera cannot be scaled to zero, or mirrored"),
-        ("0.8950399503143397", "4", ": camera 0: its `yfov` or its `aspectRatio` is out of range"),
-        ("\"width\": 640", "\"width\": 0", ": camera 0: its `extras.lens` has a size of 0"),
-        ("\"width\": 640, ", "", ": camera 0: its `extras.lens`: missing field `width`"),
-        (
-            "\"count\": 1, \"type\": \"VEC3\"",
-            "\"count\": 2, \"type\": \"VEC3\"",
-            ": accessor 0: its bytes are incomplete",
-        ),
-        ("\"byteLength\": 16}],", "\"byteLength\": 17}],", ": accessor 0: its bytes are incomplete"),
-        ("data:application", "points.bin?", ": accessor 0: its bytes are in another file"),
-        ("AACAPw", "AACA/w", ": accessor 0: it contains NaN or infinity"),
-        ("{\"asset\"", "glTF", ": this binary glTF file is truncated"),
+        ("0.8950399503143397", "4", ": camera 0: `yfov` or `aspectRatio` is out of range"),
+        ("\"width\": 640", "\"width\": 0", ": camera 0: `extras.lens` has a size of 0"),
+        ("\"width\": 640, ", "", ": camera 0: `extras.lens` is invalid (missing field `width`"),
+        ("\"count\": 1, \"type\": \"VEC3\"", "\"count\": 2, \"type\": \"VEC3\"", ": accessor 0 has incomplete bytes"),
+        ("\"byteLength\": 16}],", "\"byteLength\": 17}],", ": accessor 0 has incomplete bytes"),
+        ("data:application", "points.bin?", ": accessor 0 has its bytes in another file"),
+        ("AACAPw", "AACA/w", ": accessor 0 contains NaN or infinity"),
+        ("{\"asset\"", "glTF", ": the binary glTF file is truncated"),
     ] {
         let text = gltf.replace(old, new);
         assert_ne!(text, gltf, "{old}");
@@ -297,7 +293,7 @@ fn ply_and_gltf_errors_name_the_fault() {
         assert!(error.starts_with(wanted), "{new}: {error}");
     }
     assert!(reread("c.gltf", &gltf.replace("\"nodes\": [", "\"nodes\": 3, [")).starts_with(":1:"));
-    assert!(reread("m.json", &format!("{{\"format\": \"{FORMAT}\",")).starts_with(": these are matches"));
+    assert!(reread("m.json", &format!("{{\"format\": \"{FORMAT}\",")).starts_with(": the file contains matches"));
 }
 
 #[test]
@@ -349,7 +345,7 @@ fn compressed_files_are_decompressed() {
         is_as_meant(&reread(&place.path().join(name)), "BAL");
         put(place.path(), name, &bytes[..bytes.len() / 2]);
         let error = read(&place.path().join(name)).unwrap_err().to_string();
-        assert!(error.contains(name) && error.contains("cannot decompress it"), "{error}");
+        assert!(error.contains(name) && error.contains("cannot decompress the file"), "{error}");
     }
 }
 
@@ -361,7 +357,7 @@ fn row_errors_have_their_position() {
         ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
         ("0 0\n0 0 0\n", "c:1:4: the row ends where one of X Y Z should follow"),
         ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: unknown photograph `c.jpg`"),
-        ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: this row names a photograph twice: `a.jpg`"),
+        ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: the row repeats the photograph `a.jpg`"),
     ] {
         assert!(reread(text).starts_with(wanted), "{text}: {}", reread(text));
     }

@@ -32,7 +32,7 @@ pub enum Points<'a> {
 impl<'a> Points<'a> {
     /// Borrows the points that are stored in an array.
     pub fn new(array: &'a PointArray<'_>) -> PyResult<Self> {
-        let wrong = || PyValueError::new_err("points are rows of three numbers, one after the other");
+        let wrong = || PyValueError::new_err("points must be contiguous rows of three numbers");
         match array {
             PointArray::Single(array) => Ok(Points::Single(points(array)?)),
             PointArray::Double(array) => {
@@ -77,14 +77,15 @@ pub struct Rays<'a> {
 
 /// Borrows an array as contiguous points.
 pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
-    let wrong = || PyValueError::new_err("points are rows of three float32, one after the other");
+    let wrong = || PyValueError::new_err("points must be contiguous rows of three float32 numbers");
     array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)
 }
 
 impl<'a> Rays<'a> {
     /// Borrows rays from arrays, after checking that the lengths of the arrays match.
     pub fn new((count, origins, directions, t_min, t_max): &'a RayArrays) -> PyResult<Self> {
-        let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
+        let message = "origins, directions, t_min and t_max must have one entry for all rays or one entry per ray";
+        let wrong = || PyValueError::new_err(message);
         let count = *count;
         let (origins, directions) = (Points::new(origins)?, points(directions)?);
         let (t_min, t_max) = (t_min.as_slice()?, t_max.as_slice()?);

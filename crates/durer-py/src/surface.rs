@@ -34,7 +34,9 @@ impl<'a> Hits<'a> {
         let (triangles, uv) = (triangles.as_slice()?, uv.as_slice()?.as_chunks().0);
         let count = triangles.len();
         if uv.len() != count || objects.is_some_and(|objects| objects.len() != count) {
-            return Err(PyValueError::new_err("hits have as many triangles as objects and u and v"));
+            return Err(PyValueError::new_err(
+                "the arrays of objects, triangles, and u and v must have the same length",
+            ));
         }
         Ok(Hits { tree, objects, triangles, uv })
     }
@@ -208,7 +210,7 @@ pub fn secondary_origins<'py>(
     let hits = Hits::new(&tree, &met)?;
     let directions = points(&directions)?;
     if directions.len() != 3 * hits.triangles.len() {
-        return Err(PyValueError::new_err("each hit has a direction"));
+        return Err(PyValueError::new_err("there must be one direction for each hit"));
     }
     let start = |face: &Face, i: usize| face.leave(hits.uv[i], Vec3::from_slice(&directions[3 * i..])).to_array();
     Ok(rows(py, &hits, threads, f64::NAN, start)?.into_pyarray(py))

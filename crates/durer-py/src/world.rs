@@ -193,7 +193,7 @@ impl World {
             })
         });
         interrupted?;
-        match stop.map_err(|_| failed("the render failed; this is an error in durer"))?.map_err(failed)? {
+        match stop.map_err(|_| failed("the render failed; this is a bug in durer"))?.map_err(failed)? {
             RenderOutcome::Finished => Ok(true),
             RenderOutcome::OutOfTime => Ok(false),
             RenderOutcome::Cancelled => Err(PyKeyboardInterrupt::new_err("")),

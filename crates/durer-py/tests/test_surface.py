@@ -83,7 +83,7 @@ def test_secondary_rays_of_several_directions_and_of_misses():
     assert starts.shape == (2, 7, 3) and np.isfinite(starts[0]).all() and np.isnan(starts[1]).all()
     assert (hits.leave([0, 0, 1])[0] == hits[0].leave([0, 0, 1])).all() and hits[0].t.shape == ()
     assert not mesh.occluded(hits.leave([0, 0, -1])[1], [0, 0, -1])
-    with pytest.raises(ValueError, match=r"directions must have a shape that fits \(2, 3\), but has \(3, 3\)"):
+    with pytest.raises(ValueError, match=r"must be broadcastable with the shape \(2, 3\), but have the shape \(3, 3\)"):
         hits.leave(np.ones((3, 3)))
     every = mesh.all_hits([0, 0.1, 3], [0, 0, -1])
     assert (every.normal[:, 2] * [1, -1] > 0.9).all() and np.allclose(every.point[:, 2], 3 - every.t, atol=1e-6)
@@ -99,7 +99,7 @@ def test_surface_points_give_secondary_origins():
     there = mesh.surface(near.triangle, near.uv)
     assert np.allclose(there.point, near.point, atol=1e-6)
     assert (mesh.count(there.leave(ways), ways) % 2 == ((there.normal * ways).sum(1) < 0)).all()
-    with pytest.raises(ValueError, match="there are 12 triangles, and each place must have one of them with u and v"):
+    with pytest.raises(ValueError, match="each point needs u, v and the index of one of the 12 triangles"):
         durer.Mesh(CUBE, CUBE_FACES).surface([12], [[0, 0]])
 
 
@@ -160,7 +160,7 @@ def test_non_finite_and_duplicate_triangles_are_open():
     sheet = durer.Mesh(CUBE, [[0, 1, 3], [3, 1, 0]])
     assert sheet.is_closed and not sheet.contains([[0, 0.3, 0.5]]).any()
     assert durer.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)).is_closed
-    with pytest.raises(ValueError, match=r"vertices\[1\] is \[0.0, 0.0, 1e\+39\], which is beyond single precision"):
+    with pytest.raises(ValueError, match=r"vertices\[1\] is \[0.0, 0.0, 1e\+39\], which exceeds the range of"):
         durer.Mesh(CUBE.astype(float) * 1e39, faces)
 
 

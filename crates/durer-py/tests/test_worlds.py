@@ -177,7 +177,7 @@ def test_invalid_options_are_refused(whitted):
             whitted.render(**wrong)
         assert "--" not in str(raised.value)
     for x in (-1, 0.5, 1 << 40):
-        with pytest.raises(ValueError, match="x must be the number of a pixel, 0 or more, but is"):
+        with pytest.raises(ValueError, match="x must be a pixel coordinate, a whole number of 0 or more, but is"):
             whitted.explain(x, 0)
     assert "samples" in durer.options() and "output" not in durer.options() and "depth" in durer.kinds()
 
@@ -274,9 +274,9 @@ def test_part_continues_with_its_options(whitted):
     part = whitted.part(size=(40, 30), samples=2)
     for wrong in ({"size": (20, 15)}, {"samples": 3}, {"show": "depth"}, {"shard": (1, 2)}, {"threads": 1, "seed": 4}):
         name = list(wrong)[-1]
-        with pytest.raises(ValueError, match=f"the part belongs to a different image than {name} would give"):
+        with pytest.raises(ValueError, match=f"a different image than the options {name} would give"):
             whitted.render(part=part, **wrong)
-    with pytest.raises(ValueError, match="a different image than size, samples would give"):
+    with pytest.raises(ValueError, match="a different image than the options size, samples would give"):
         whitted.render(part=durer.Part.read(part.bytes()), size=(40, 30), samples=3)
     same = whitted.render(part=part, size="40x30", threads=1, time_limit=100)
     assert same.hash == whitted.render(size=(40, 30), samples=2).hash

@@ -66,7 +66,7 @@ impl RenderReview<'_> {
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };
         let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
         if !layer.image.pixels.iter().any(grey) {
-            self.report("the depth picture contains only black and white, with no grey between");
+            self.report("the depth picture has only black and white pixels and no grey ones");
         }
     }
 

@@ -103,10 +103,13 @@ fn explained(comparison: &Comparison) -> Vec<String> {
         match i {
             // The location of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent} of the squared difference is there)", finding.description)
+                format!(
+                    "{} ({percent} of the squared difference lies in this part of the picture)",
+                    finding.description
+                )
             }
             0 => format!("{}: explains {percent} of the squared difference", finding.description),
-            _ => format!("and {}: together {percent}", finding.description),
+            _ => format!("and {}: the causes so far explain {percent}", finding.description),
         }
     };
     comparison.findings.iter().enumerate().map(line).collect()

@@ -18,14 +18,15 @@ pub fn find_mistakes(stage: &ReferenceScene, reference: &Picture, test: &Picture
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     if !diagnosis.reference_matches_scene() {
         return vec![format!(
-            "cause unknown: with these options, {:.0} % of this scene's pixels differ from the reference; pass the \
-             options that it was rendered with (--dialect, --shadows, --bounces, --samples, --transfer)",
+            "cause unknown: if the scene is rendered with the given options, {:.0} % of the pixels differ from the \
+             reference; pass the options that the reference was rendered with (--dialect, --shadows, --bounces, \
+             --samples, --transfer)",
             100.0 * diagnosis.reference_difference
         )];
     }
     if let Some(nearly) = &diagnosis.nearly {
         return vec![format!(
-            "nearly: {}: explains {} of the squared difference, but something more is different",
+            "{}: explains {} of the squared difference, but another difference remains",
             words(nearly),
             percent(nearly.explained)
         )];

@@ -68,7 +68,7 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
         }
         if any == 0 {
             return Err(invalid_input(format!(
-                "no picture in `{}` has the name of one in `{}`",
+                "no picture in `{}` has the same name as a picture in `{}`",
                 picture.display(),
                 reference.display()
             )));

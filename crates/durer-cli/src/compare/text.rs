@@ -51,7 +51,7 @@ pub fn single(compared: &ComparedPair, options: &Options) {
     if let Some(largest) = &measures.largest {
         let values = |color: [f32; 3]| color.map(|value| format!("{value:.4}")).join(" ");
         print_line(&format!(
-            "  largest   {} at {},{}: {} in the reference, {} here",
+            "  largest   {} at {},{}: {} in the reference, {} in the picture",
             tolerance(largest.difference),
             largest.x,
             largest.y,
@@ -62,7 +62,7 @@ pub fn single(compared: &ComparedPair, options: &Options) {
     if let Some((x, y)) = measures.first_not_finite {
         let [reference, picture] = measures.not_finite;
         print_line(&format!(
-            "  not finite  {reference} pixels of the reference, {picture} here, the first that differs at {x},{y}"
+            "  not finite  {reference} pixels of the reference, {picture} of the picture; first difference at {x},{y}"
         ));
     }
     for (i, region) in comparison.regions.iter().enumerate().take(3) {

@@ -51,9 +51,9 @@ const OPTIONS: [CourseOption; 32] = [
     CourseOption("-grid", &["NX", "NY", "NZ"], set::OLD, "use a uniform grid"),
     CourseOption("-visualize_grid", &[], set::OLD, "show the grid's occupied cells"),
     CourseOption("-stats", &[], set::OLD, "print the number of objects and rays"),
-    CourseOption("-random_samples", &["N"], set::OLD, "samples per pixel, at random"),
+    CourseOption("-random_samples", &["N"], set::OLD, "samples per pixel, at random positions"),
     CourseOption("-uniform_samples", &["N"], set::OLD, "samples per pixel, in a regular pattern"),
-    CourseOption("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at a random place in each cell of a grid"),
+    CourseOption("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at a random position per grid cell"),
     CourseOption("-box_filter", &["R"], set::OLD, "box filter"),
     CourseOption("-tent_filter", &["R"], set::OLD, "tent filter"),
     CourseOption("-gaussian_filter", &["SIGMA"], set::OLD, "Gaussian filter"),
@@ -162,7 +162,7 @@ impl Arguments {
                 return Err(invalid_input(message));
             }
             if !quiet {
-                print_error_line(&format!("warning: {message} (ignored, as the official program does)"));
+                print_error_line(&format!("warning: {message} (the option is ignored, as by the official program)"));
             }
         }
         Ok(())

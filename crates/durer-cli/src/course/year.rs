@@ -72,7 +72,7 @@ fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
         true => guess.note(),
         false => {
             let (dialect, other) = (dialect.name(), guess.dialect.name());
-            Diagnostic::note(format!("read as {dialect}, because the picture under {other} has NaN samples"))
+            Diagnostic::note(format!("read as {dialect}, because the picture rendered as {other} has NaN samples"))
                 .code("dialect")
         }
     }

@@ -110,8 +110,10 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
 /// `T` must be the type of the function.
 unsafe fn symbol<'l, T>(library: &'l Library, name: &CStr) -> Result<Symbol<'l, T>, String> {
     // SAFETY: the caller guarantees that the type is the function's type.
-    unsafe { library.get(name.to_bytes_with_nul()) }
-        .map_err(|_| format!("this is not version 2 of Open Image Denoise: it has no {}", name.to_string_lossy()))
+    unsafe { library.get(name.to_bytes_with_nul()) }.map_err(|_| {
+        let name = name.to_string_lossy();
+        format!("the library is not version 2 of Open Image Denoise (the function `{name}` is missing)")
+    })
 }
 
 fn load() -> Result<Library, String> {

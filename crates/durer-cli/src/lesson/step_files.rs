@@ -97,7 +97,8 @@ impl StepFiles {
         // Later steps of the same topic do not need an explanation.
         (self.uses_built_in_scene && !self.continues_topic).then(|| {
             format!(
-                "{scene} cannot show this: {missing_because}. This step uses a small built-in scene, {OWN_SCENE_NAME}."
+                "{scene} cannot show this step: {missing_because}. The step uses a small built-in scene, \
+                 {OWN_SCENE_NAME}."
             )
         })
     }

@@ -38,12 +38,17 @@ pub fn run(args: &CameraArgs) -> Result<(), Failure> {
         let threshold = args.threshold.unwrap_or(0.005 * f64::from(size[0].max(size[1])));
         let priors = LensPriors { size, focal: args.focal, distortion: args.distortion, threshold };
         let estimate = camera(&pairs, &priors).map_err(from_photo_error)?;
-        report(format!("{} of {} points agree; rms {:.3} pixels", estimate.inliers.len(), pairs.len(), estimate.rms));
+        report(format!(
+            "{} of {} points agree with the camera; rms {:.3} pixels",
+            estimate.inliers.len(),
+            pairs.len(),
+            estimate.rms
+        ));
         for i in (0..pairs.len()).filter(|i| !estimate.inliers.contains(i)) {
-            report(format!("point {} does not agree: its position or its pixel is wrong", i + 1));
+            report(format!("point {} does not agree with the camera: its position or its pixel is wrong", i + 1));
         }
         report(format!(
-            "conditioning {:.2e}: ratio of the worst to the best determined direction",
+            "conditioning {:.2e} (ratio of the smallest to the largest singular value)",
             estimate.conditioning
         ));
         (estimate.lens, estimate.pose)

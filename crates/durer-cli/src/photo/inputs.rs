@@ -39,7 +39,8 @@ pub fn bytes_below(folder: &Path, name: &Path, registry: &mut FileRegistry) -> R
 
 fn outside(path: &Path, folder: &Path) -> String {
     format!(
-        "`{}` lies outside the folder `{}`\nhelp: copy it into the folder: only files in and below it are read",
+        "`{}` lies outside the folder `{}`\nhelp: copy the file into the folder; only files in and below the \
+         folder are read",
         path.display(),
         folder.display()
     )

@@ -57,7 +57,8 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     }
     if raster(&with.world, width, height).empty() != (0, 0) {
         return Err(invalid_input(format!(
-            "the scene's camera does not fit `{name}`, which is {width}x{height}: compute it with `durer photo camera`"
+            "the scene's camera does not fit `{name}`, which is {width}x{height}: compute the camera with `durer photo \
+             camera`"
         )));
     }
     let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
@@ -71,8 +72,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let root = with.loaded.scene.root.take();
     with.loaded.scene.root = root.map(|root| Group { objects: kept(root.objects, &stand_in) });
     let without = with.loaded.compile(&options, &mut Files::default(), &mut Diagnostics::default());
-    let empty =
-        color(&without.ok_or_else(|| invalid_input("the scene without the inserted objects does not compile"))?)?;
+    let empty = color(&without.ok_or_else(|| invalid_input("the scene is not valid without the inserted objects"))?)?;
     let plate: Vec<Vec3> = photo.pixels.pixels().map(|p| Vec3::from(p.0.map(decode_srgb))).collect();
     let pixels = composed(width as usize, &plate, &colors, &empty, &covered);
     let layer =
@@ -88,7 +88,9 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
     for number in numbers {
         let slot = all.get_mut(*number as usize);
         *slot.ok_or_else(|| {
-            invalid_input(format!("--stand-in {number}: the scene has {count} materials, numbered from 0"))
+            invalid_input(format!(
+                "--stand-in {number}: the scene has only {count} materials, which are numbered from 0"
+            ))
         })? = true;
     }
     let objects = compiled.loaded.scene.root.iter().flat_map(|root| &root.objects);
@@ -97,8 +99,10 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
         (a || c, b || d)
     });
     match (there, others) {
-        (false, _) => Err(invalid_input("no object has a material of --stand-in: nothing can catch a shadow")),
-        (_, false) => Err(invalid_input("every object has a material of --stand-in: there is nothing to insert")),
+        (false, _) => Err(invalid_input("no object has a material given by --stand-in, so nothing can catch a shadow")),
+        (_, false) => {
+            Err(invalid_input("every object has a material given by --stand-in, so there is nothing to insert"))
+        }
         _ => Ok(all),
     }
 }

@@ -130,7 +130,7 @@ fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction,
     })?;
     if !args.run.quiet {
         let (steps, end) = (report.costs.len() - 1, if report.converged { "converged" } else { "not converged" });
-        print_line(&format!("cost {:.6e}, rms {:.4} pixels, before", before.cost, before.rms));
+        print_line(&format!("before the adjustment: cost {:.6e}, rms {:.4} pixels", before.cost, before.rms));
         print_line(&format!("{end} after {steps} steps"));
     }
     Ok(all)

@@ -79,7 +79,7 @@ pub fn covariance(reconstruction: &Reconstruction, options: &Options) -> Result<
     let size: Vec<f64> = free.iter().map(|i| reduced.matrix[(*i, *i)].max(0.0).sqrt()).collect();
     let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| part[(i, j)] / (size[i] * size[j]));
     let inverse = Cholesky::new(scaled).map(|factor| factor.inverse()).filter(|m| m.iter().all(|c| c.is_finite()));
-    let inverse = inverse.ok_or_else(|| Error::new("the observations do not determine some camera"))?;
+    let inverse = inverse.ok_or_else(|| Error::new("at least one camera is not determined by the observations"))?;
     let unknowns = free.len() + if options.points { 3 * kept.points.len() } else { 0 };
     let spare = system.residual_count().saturating_sub(unknowns).max(1);
     let sigma = (2.0 * system.cost(&state) / spare as f64).sqrt();

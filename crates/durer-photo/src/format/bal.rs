@@ -28,7 +28,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         let start = words.next_position();
         let [rx, ry, rz, x, y, z, focal, k1, k2] = words.numbers("a camera's nine parameters")?;
         if focal == 0.0 {
-            return Err(Error::at(file, start, "the focal length of this camera, its seventh parameter, is 0"));
+            return Err(Error::at(file, start, "the camera's focal length (its seventh parameter) is 0"));
         }
         let rotation = rotation_of(&Vector3::new(rx, ry, rz));
         let pose = flip_camera_axes(&Pose { rotation, translation: Vector3::new(x, y, z) });

@@ -27,7 +27,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         let start = words.next_position();
         let rotation = Matrix3::from_row_slice(&words.numbers::<9>("the rotation")?);
         if focal > 0.0 && !is_rotation(&rotation) {
-            return Err(Error::at(file, start, "these nine numbers are not a rotation"));
+            return Err(Error::at(file, start, "the nine numbers do not form a rotation matrix"));
         }
         let translation = Vector3::from(words.numbers::<3>("the translation")?);
         let pose = (focal != 0.0).then(|| flip_camera_axes(&Pose { rotation, translation }));

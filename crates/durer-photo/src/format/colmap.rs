@@ -22,7 +22,7 @@ pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
         2 => (p[0], p[0], [p[1], p[2]], [p[3], 0.0]),
         3 => (p[0], p[0], [p[1], p[2]], [p[3], p[4]]),
         _ if p[6] != 0.0 || p[7] != 0.0 => {
-            return Err("tangential distortion (p1, p2) is not supported: it must be 0".into());
+            return Err("tangential distortion is not supported: p1 and p2 must be 0".into());
         }
         _ => (p[0], p[1], [p[2], p[3]], [p[4], p[5]]),
     };

@@ -19,11 +19,11 @@ pub fn decompress(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     };
     let mut plain = Vec::new();
     let read = reader.by_ref().take(MAX_DECOMPRESSED_SIZE + 1).read_to_end(&mut plain);
-    read.map_err(|error| Error::in_file(file, format!("cannot decompress it ({packed}): {error}")))?;
+    read.map_err(|error| Error::in_file(file, format!("cannot decompress the file ({packed}): {error}")))?;
     if plain.len() as u64 > MAX_DECOMPRESSED_SIZE {
         return Err(Error::in_file(
             file,
-            format!("it is longer than {} GiB after decompression", MAX_DECOMPRESSED_SIZE >> 30),
+            format!("the file is longer than {} GiB after decompression", MAX_DECOMPRESSED_SIZE >> 30),
         ));
     }
     Ok(plain.into())

@@ -43,7 +43,7 @@ struct ExportedCamera {
 /// Reads a camera exported by fSpy.
 pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     let camera: ExportedCamera = serde_json::from_slice(json)
-        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("fSpy's JSON: {error}")))?;
+        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("invalid fSpy JSON: {error}")))?;
     let size = [camera.image_width, camera.image_height];
     let half = f64::from(size[0].max(size[1])) / 2.0;
     let mut lens = Lens::new(size, camera.relative_focal_length * half);
@@ -59,7 +59,7 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
     let mut bytes = ByteReader::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {
-        return Err(Error::in_file(file, "this is not an fSpy project"));
+        return Err(Error::in_file(file, "the file is not an fSpy project"));
     }
     let version = bytes.u32()?;
     if version != 1 {
@@ -69,7 +69,7 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     let state = bytes.take(state)?;
     let photograph = bytes.take(photograph)?;
     let state: Value = serde_json::from_slice(state)
-        .map_err(|error| Error::in_file(file, format!("invalid JSON in its state: {error}")))?;
+        .map_err(|error| Error::in_file(file, format!("invalid JSON in the project's state: {error}")))?;
     if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
         return Err(Error::in_file(
             file,
@@ -106,5 +106,8 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
             lines: [first?, second?],
         })
     };
-    Ok((all().ok_or_else(|| Error::in_file(file, "its state lacks vanishing lines, axes or the origin"))?, photograph))
+    Ok((
+        all().ok_or_else(|| Error::in_file(file, "the project's state lacks vanishing lines, axes or the origin"))?,
+        photograph,
+    ))
 }

@@ -130,9 +130,9 @@ struct Buffer {
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::in_file(name, why);
     let (json, binary) =
-        chunks(bytes).ok_or_else(|| fail("this binary glTF file is truncated, or not version 2".into()))?;
+        chunks(bytes).ok_or_else(|| fail("the binary glTF file is truncated or is not version 2".into()))?;
     let file: File = serde_json::from_slice(json)
-        .map_err(|error| Error::at(name, (error.line(), error.column()), format!("glTF's JSON: {error}")))?;
+        .map_err(|error| Error::at(name, (error.line(), error.column()), format!("invalid glTF JSON: {error}")))?;
     let mut reconstruction = Reconstruction::default();
     let mut buffers = vec![None; file.buffers.len()];
     for (i, world) in world_transforms(&file).map_err(fail)? {
@@ -240,11 +240,11 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     let half = libm::tan(perspective.yfov / 2.0);
     let ratio = perspective.aspect_ratio.unwrap_or(1.0);
     if !(0.0..std::f64::consts::PI).contains(&perspective.yfov) || half <= 0.0 || !(ratio.is_finite() && ratio > 0.0) {
-        return Err("its `yfov` or its `aspectRatio` is out of range".into());
+        return Err("`yfov` or `aspectRatio` is out of range".into());
     }
     let beyond = match &extras["lens"] {
         Value::Null => None,
-        lens => Some(Extras::deserialize(lens).map_err(|error| format!("its `extras.lens`: {error}"))?),
+        lens => Some(Extras::deserialize(lens).map_err(|error| format!("`extras.lens` is invalid ({error})"))?),
     };
     let Some(beyond) = beyond else {
         let size = [(DEFAULT_HEIGHT * ratio).round().clamp(1.0, 1e6), DEFAULT_HEIGHT];
@@ -256,7 +256,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
     let size = [beyond.width, beyond.height];
     if size.contains(&0) {
-        return Err("its `extras.lens` has a size of 0".into());
+        return Err("`extras.lens` has a size of 0".into());
     }
     Ok(Lens { size, focal: vertical / aspect, aspect, principal_point: beyond.center, distortion: beyond.radial })
 }
@@ -269,34 +269,35 @@ fn column(
     binary: &[u8],
     number: usize,
 ) -> Result<Vec<Vector3<f64>>, String> {
-    let fail = |why: &str| format!("accessor {number}: {why}");
-    let accessor = file.accessors.get(number).ok_or_else(|| fail("it does not exist"))?;
+    let fail = |why: &str| format!("accessor {number} {why}");
+    let accessor = file.accessors.get(number).ok_or_else(|| fail("does not exist"))?;
     let width = match &*accessor.shape {
         "VEC3" => 3,
         "VEC4" => 4,
-        _ => return Err(fail("positions and colours must have three or four numbers")),
+        _ => return Err(fail("must have the type VEC3 or VEC4")),
     };
     let size = match accessor.component_type {
         5121 => 1,
         5123 => 2,
         5126 => 4,
-        _ => return Err(fail("this component type is not allowed for positions and colours")),
+        _ => return Err(fail("has a component type that is not allowed for positions and colours")),
     };
-    let view =
-        accessor.buffer_view.and_then(|view| file.buffer_views.get(view)).ok_or_else(|| fail("it has no bytes"))?;
-    let buffer = file.buffers.get(view.buffer).ok_or_else(|| fail("it has no buffer"))?;
+    let view = accessor.buffer_view.and_then(|view| file.buffer_views.get(view)).ok_or_else(|| fail("has no bytes"))?;
+    let buffer = file.buffers.get(view.buffer).ok_or_else(|| fail("has no buffer"))?;
     let bytes = match &buffer.uri {
         None => binary,
         Some(uri) => {
             let packed = uri.split_once(";base64,").filter(|(kind, _)| kind.starts_with("data:"));
-            let packed = packed.ok_or_else(|| fail("its bytes are in another file, which is not supported"))?.1;
+            let packed = packed.ok_or_else(|| fail("has its bytes in another file, which is not supported"))?.1;
             if buffers[view.buffer].is_none() {
-                buffers[view.buffer] = Some(STANDARD.decode(packed).map_err(|error| fail(&error.to_string()))?);
+                let decoded = STANDARD.decode(packed);
+                let decoded = decoded.map_err(|error| fail(&format!("has invalid base64 data ({error})")))?;
+                buffers[view.buffer] = Some(decoded);
             }
             buffers[view.buffer].as_deref().unwrap_or_default()
         }
     };
-    let short = || fail("its bytes are incomplete");
+    let short = || fail("has incomplete bytes");
     let bytes = bytes.get(view.byte_offset..).and_then(|bytes| bytes.get(..view.byte_length)).ok_or_else(short)?;
     let bytes = bytes.get(accessor.byte_offset..).ok_or_else(short)?;
     let stride = view.byte_stride.unwrap_or(width * size).max(1);
@@ -317,7 +318,7 @@ fn column(
     }
     match rows.iter().flatten().all(|value| value.is_finite()) {
         true => Ok(rows),
-        false => Err(fail("it contains NaN or infinity")),
+        false => Err(fail("contains NaN or infinity")),
     }
 }
 

@@ -160,7 +160,7 @@ fn tracks_of(path: &Path) -> Option<PathBuf> {
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     read_with(path, &mut |path| {
         let read = std::fs::read(path).map(Into::into);
-        read.map_err(|error| Error::in_file(&path.to_string_lossy(), format!("cannot read it: {error}")))
+        read.map_err(|error| Error::in_file(&path.to_string_lossy(), format!("cannot read the file: {error}")))
     })
 }
 
@@ -185,7 +185,7 @@ pub fn read_with(path: &Path, open: &mut OpenFile) -> Result<Reconstruction, Err
         Some("gltf" | "glb") => gltf::read(&file, &content),
         Some("json") if is_matches(&content) => Err(Error::in_file(
             &file,
-            "these are matches without cameras: compute the cameras with `durer photo solve`",
+            "the file contains matches without cameras: compute the cameras with `durer photo solve`",
         )),
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
         Some("json") => {
@@ -195,7 +195,8 @@ pub fn read_with(path: &Path, open: &mut OpenFile) -> Result<Reconstruction, Err
         }
         _ => Err(Error::in_file(
             &file,
-            "the name must end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or be a COLMAP folder",
+            "the name must end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or the path \
+             must be a COLMAP folder",
         )),
     }
 }
@@ -240,7 +241,8 @@ impl Output {
             Some("gltf") => Output::Gltf,
             Some(_) => {
                 let file = path.to_string_lossy();
-                let why = "the name must end in .out, .txt, .json, .ply or .gltf, or be a COLMAP folder";
+                let why =
+                    "the name must end in .out, .txt, .json, .ply or .gltf, or have no extension for a COLMAP folder";
                 return Err(Error::in_file(&file, why));
             }
         })

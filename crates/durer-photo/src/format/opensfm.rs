@@ -50,7 +50,7 @@ struct JsonReconstruction {
 /// reconstructions, the one with the most shots is used.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
     let parts: Vec<JsonReconstruction> = serde_json::from_slice(json)
-        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
+        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("invalid OpenSfM JSON: {error}")))?;
     let part = parts.into_iter().reduce(|best, next| if next.shots.len() > best.shots.len() { next } else { best });
     let part = part.ok_or_else(|| Error::in_file(file, "the file has no reconstruction"))?;
     let mut reconstruction = Reconstruction::default();
@@ -106,7 +106,7 @@ fn read_tracks(
     words.rest_of_line();
     while !words.is_at_end() {
         // Fields are separated by tabs, since names can contain spaces.
-        let error = words.error("this row should be: photograph, track, feature, x, y, ..., between tabs");
+        let error = words.error("expected a row of tab-separated fields: photograph, track, feature, x, y, ...");
         let fields: Vec<&str> = words.rest_of_line().split('\t').collect();
         let number = |i: usize| fields.get(i)?.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         let feature = fields.get(2).and_then(|field| field.trim().parse().ok());

@@ -54,7 +54,9 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
     let mut length = 0;
     let end = lines.inspect(|line| length += line.len()).find(is_end);
-    end.ok_or_else(|| Error::in_file(file, "this is not a PLY file: it needs a header from `ply` to `end_header`"))?;
+    end.ok_or_else(|| {
+        Error::in_file(file, "the file is not a PLY file: there is no header from `ply` to `end_header`")
+    })?;
     let head = head(file, &bytes[..length])?;
     let (size, rest) =
         (head.properties.iter().map(|(_, kind)| NUMBER_TYPES[*kind].2).sum::<usize>(), bytes.len() - length);
@@ -66,7 +68,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     }
     let of = |name: &str| head.properties.iter().position(|property| property.0 == name);
     let (Some(x), Some(y), Some(z)) = (of("x"), of("y"), of("z")) else {
-        return Err(Error::at(file, head.count_position, "these points have no x, y and z"));
+        return Err(Error::at(file, head.count_position, "the points need the properties x, y and z"));
     };
     // Colours are integers up to 255 or 65535, or floats from 0 to 1.
     let shade = |i: usize| match NUMBER_TYPES[head.properties[i].1].0 {

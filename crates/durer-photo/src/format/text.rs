@@ -25,7 +25,7 @@ impl<'t> TokenReader<'t> {
             let before = &bytes[..error.valid_up_to()];
             let line = 1 + before.iter().filter(|b| **b == b'\n').count();
             let column = 1 + before.len() - before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
-            Error::at(file, (line, column), "this is not a text file")
+            Error::at(file, (line, column), "the file is not a text file")
         })?;
         Ok(TokenReader { file, text, at: 0, line: 1, start: 0, rows: false })
     }
@@ -158,9 +158,7 @@ impl<'t> TokenReader<'t> {
     pub fn index(&mut self, what: &str, end: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
-        index.ok_or_else(|| {
-            Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, numbered from 0"))
-        })
+        index.ok_or_else(|| Error::at(self.file, place, format!("expected {what} less than {end}, found `{word}`")))
     }
 
     /// Returns an error if any words are left in the current row.

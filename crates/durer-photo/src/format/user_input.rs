@@ -43,8 +43,9 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
         }
     }
     let count = sets.len();
-    let [one, two] = <[_; 2]>::try_from(sets)
-        .map_err(|_| Error::in_file(file, format!("lines of two axes are needed, but the file has {count}")))?;
+    let [one, two] = <[_; 2]>::try_from(sets).map_err(|_| {
+        Error::in_file(file, format!("the file must contain lines of two axes, but has lines of {count}"))
+    })?;
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
@@ -62,7 +63,7 @@ pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<Cont
             let view = names.iter().position(|known| *known == name);
             let view = view.ok_or_else(|| fail("unknown photograph"))?;
             if observations.iter().any(|other| other.view == view) {
-                return Err(fail("this row names a photograph twice:"));
+                return Err(fail("the row repeats the photograph"));
             }
             observations.push(Observation { view, feature: 0, pixel: words.numbers("one of u v")?.into() });
         }

@@ -121,11 +121,12 @@ pub fn align_to_control_points(
     let count = from.len();
     if count < 3 {
         return Err(crate::Error::new(format!(
-            "control needs at least three points, each observed by two photographs with a known pose; the file has {count}"
+            "at least three control points are needed, each observed by two photographs with a known pose, but the \
+             file has {count}"
         )));
     }
     let similarity = align_points(&from, &to).ok_or_else(|| {
-        crate::Error::new("the control points lie on a line, so the rotation about it is undetermined")
+        crate::Error::new("the control points lie on a line, so the rotation about this line is undetermined")
     })?;
     let left = from.iter().zip(&to).map(|(a, b)| (similarity.apply(a) - b).norm()).collect();
     Ok((similarity, left))

@@ -247,11 +247,11 @@ impl Matches {
     /// Reads the output of [`Matches::to_json`].
     pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
         let matches: Matches = serde_json::from_slice(json).map_err(|error| {
-            Error::at(file, (error.line(), error.column()), format!("not a file of durer photo match: {error}"))
+            Error::at(file, (error.line(), error.column()), format!("invalid file of `durer photo match`: {error}"))
         })?;
         let fail = |why: String| Err(Error::in_file(file, why));
         if matches.format != FORMAT {
-            return fail(format!("its format is `{}`, not `{FORMAT}`", matches.format));
+            return fail(format!("the file's format is `{}`, not `{FORMAT}`", matches.format));
         }
         let count = matches.lenses().len();
         for (i, picture) in matches.pictures.iter().enumerate() {

@@ -150,7 +150,7 @@ fn solve_once(
     let mut solver = Solver::new(matches, options);
     let mut notes = Vec::new();
     let first = solver.initial(matches)?.map(|i| &matches.pictures[i].name);
-    notes.push(format!("started with {} and {}", first[0], first[1]));
+    notes.push(format!("the reconstruction started with {} and {}", first[0], first[1]));
     let mut refused = vec![false; solver.views.len()];
     let mut last_adjusted = 2;
     while let Some(view) = solver.next(&refused) {
@@ -187,9 +187,7 @@ fn solve_once(
         {
             reported.push(view.lens);
             let (name, wrong) = (&picture.name, picture.focal);
-            notes.push(format!(
-                "{name}: the focal length is {focal:.0} pixels, but EXIF says {wrong:.0}: EXIF is wrong"
-            ));
+            notes.push(format!("{name} has a focal length of {focal:.0} pixels, but EXIF wrongly says {wrong:.0}"));
         }
     }
     let mut reconstruction = solver.reconstruction(true).0;

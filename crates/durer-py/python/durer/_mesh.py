@@ -36,7 +36,7 @@ def centered(given: Points) -> tuple[Floats, Doubles]:
     lost = np.isinf(own) & np.isfinite(given)
     if lost.any():
         i = int(lost.any(axis=1).argmax())
-        raise ValueError(f"vertices[{i}] is {given[i].tolist()}, which is beyond single precision")
+        raise ValueError(f"vertices[{i}] is {given[i].tolist()}, which exceeds the range of single precision")
     return own, center
 
 

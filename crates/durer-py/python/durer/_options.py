@@ -68,7 +68,7 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
         if name not in OPTIONS or is_reading(name) != reading and (name, reading) != ("size", True):
             known = [n.replace("-", "_") for n in OPTIONS if is_reading(n) == reading]
             near = difflib.get_close_matches(keyword, known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            hint = f"did you mean {near[0]}?" if near else f"the options are {', '.join(known)}"
             raise TypeError(f"there is no option {keyword}: {hint}")
         found += [(name, text) for text in _texts(keyword, name, value)]
     return found
@@ -82,7 +82,7 @@ def parse_words(words: Optional[Sequence[str]]) -> Pairs:
         name, equals, text = word.removeprefix("--").partition("=")
         name = _ALIASES.get(name, name)
         if not word.startswith("--") or name not in OPTIONS:
-            raise ValueError(f"{word} is not an option of a render")
+            raise ValueError(f"{word} is not a render option")
         value = OPTIONS[name].value
         if not equals and value == "on|off":
             text = "on"

@@ -26,7 +26,7 @@ def _files(world: World) -> dict[str, bytes]:
         if path == world.path.resolve() or not path.is_file():
             continue
         if not path.is_relative_to(folder):
-            raise ValueError(f"{path} is outside the scene's folder and is not sent to a farm")
+            raise ValueError(f"{path} is outside the scene's folder and cannot be sent to a farm")
         files.setdefault(str(path.relative_to(folder)), path.read_bytes())
     return files
 

@@ -69,7 +69,7 @@ class _SurfaceHits:
             shape = np.broadcast_shapes(self.triangle.shape, ways.shape[:-1])
         except ValueError:
             raise ValueError(
-                f"directions must have a shape that fits {(*self.triangle.shape, 3)}, but has {ways.shape}"
+                f"directions must be broadcastable with the shape {(*self.triangle.shape, 3)}, but have the shape {ways.shape}"
             ) from None
         ways = rows(np.broadcast_to(ways, (*shape, 3)), 3)
         return _durer.secondary_origins(self._source._tree, self._flat(shape), ways, self._threads).reshape(*shape, 3)

@@ -31,7 +31,7 @@ def check_rays(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[t
             shape = np.broadcast_shapes(starts.shape, ways.shape)[:-1]
         except ValueError:
             raise ValueError(
-                f"origins and directions must have shapes that fit together, but have {starts.shape} and {ways.shape}"
+                f"origins and directions must be broadcastable, but have the shapes {starts.shape} and {ways.shape}"
             ) from None
     starts, ways = (_spread(array, shape) for array in (starts, ways))
     return shape, (math.prod(shape), starts, ways, as_scalars("t_min", t_min, shape), as_scalars("t_max", t_max, shape))
@@ -177,7 +177,7 @@ class _Rays:
 
 def check_threads(threads: Optional[int]) -> Optional[int]:
     if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
-        raise ValueError(f"threads must be 1 or more, a whole number, or None for all, but is {threads!r}")
+        raise ValueError(f"threads must be a whole number of 1 or more, or None for all processors, but is {threads!r}")
     return threads
 
 
@@ -294,7 +294,7 @@ class Mesh(_Rays):
         2). Use it, for example, to start rays at nearest points or at vertices."""
         triangles, places = np.asarray(as_array("triangle", triangle), np.int32), as_vectors("uv", uv, 2)
         if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
-            raise ValueError(f"there are {len(self.faces)} triangles, and each place must have one of them with u and v")
+            raise ValueError(f"each point needs u, v and the index of one of the {len(self.faces)} triangles")
         return Hits(np.zeros(triangles.shape, np.float32), triangles, places, None, self)
 
     @cached_property
@@ -358,7 +358,7 @@ class Scene(_Rays):
         trees are shared with this scene; only the small tree over the objects is rebuilt."""
         for i in places:
             if not 0 <= i < len(self.meshes):
-                raise ValueError(f"there is no object {i} among {len(self.meshes)}")
+                raise ValueError(f"there is no object {i}: the scene has {len(self.meshes)} objects, numbered from 0")
         return Scene((mesh, places.get(i, self.matrices[i])) for i, mesh in enumerate(self.meshes))
 
     def __reduce__(self) -> Any:

@@ -54,7 +54,7 @@ class Thing:
             return " ".join(number(x) for x in array)
         if array.ndim == 2:
             return "{ " + "  ".join(" ".join(number(x) for x in row) for row in array) + " }"
-        raise ValueError(f"{self.word}: {name} must be one number, three, or rows of them, but has the shape {array.shape}")
+        raise ValueError(f"{self.word}: {name} must be one number, three numbers, or rows of numbers, but has the shape {array.shape}")
 
     def __repr__(self) -> str:
         return f"{self.word}({', '.join(f'{name}={value!r}' for name, value in self.fields)})"
@@ -129,7 +129,7 @@ class Writer:
         """Returns an object as text, preceded by its material."""
         item = Model(item) if isinstance(item, Mesh) else item
         if not isinstance(item, Object):
-            raise TypeError(f"objects must be shapes, meshes, groups or solids, but this is {type(item).__name__}: {item!r}")
+            raise TypeError(f"objects must be shapes, meshes, groups or solids, but {item!r} is of type {type(item).__name__}")
         material = item.material or around
         words = "" if material is None else f"MaterialIndex {self.number(material)} "
         return words + item.write(self, material)

@@ -64,7 +64,7 @@ class Camera:
         if inner.shape != (3, 3):
             raise ValueError(f"intrinsics must have the shape (3, 3), but has {inner.shape}")
         if not np.isfinite(inner).all() or (inner[2] != (0, 0, 1)).any() or inner[1, 0] != 0:
-            raise ValueError(f"intrinsics must be fx s cx, 0 fy cy, 0 0 1, but is {inner.tolist()}")
+            raise ValueError(f"intrinsics must have the rows fx s cx, 0 fy cy, 0 0 1, but is {inner.tolist()}")
         if inner[0, 0] <= 0 or inner[1, 1] <= 0:
             raise ValueError(f"focal lengths must be more than 0, but are {inner[0, 0]:g} and {inner[1, 1]:g}")
         return inner
@@ -83,7 +83,7 @@ class Camera:
     def _coefficients(self) -> Doubles:
         given = np.asarray(as_array("distortion", self.distortion), np.float64).reshape(-1)
         if len(given) not in (0, 4, 5, 8):
-            raise ValueError(f"distortion must be 4, 5 or 8 numbers, but is {len(given)}")
+            raise ValueError(f"distortion must have 4, 5 or 8 numbers, but has {len(given)}")
         if not np.isfinite(given).all():
             raise ValueError(f"distortion must be finite, but is {given.tolist()}")
         return np.concatenate([given, np.zeros(8 - len(given))])

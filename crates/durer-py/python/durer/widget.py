@@ -37,7 +37,7 @@ class _Camera:
     def __init__(self, world: World) -> None:
         blocks = [found for found in _CAMERA.finditer(world.text) if found[1]]
         if len(blocks) != 1:
-            raise ValueError(f"{world.path.name} has no camera in the scene language, so it cannot be orbited")
+            raise ValueError(f"{world.path.name} has no camera in the scene language, so the scene cannot be orbited")
         self.text, (self.start, self.end) = world.text, blocks[0].span()
         self.block = blocks[0][0]
         self.eye, self.along, self.up = (self._field(name) for name in ("center", "direction", "up"))

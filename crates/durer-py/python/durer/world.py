@@ -388,7 +388,7 @@ class World:
         if differs(options):
             alone = [name for name in options if part._options is not None and differs({name: options[name]})]
             given = ", ".join(alone or options)
-            raise ValueError(f"the part belongs to a different image than {given} would give: omit options that determine the image")
+            raise ValueError(f"the part belongs to a different image than the options {given} would give: omit options that determine the image")
 
     async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
         """Renders in a thread. Yields the images so far every `every` seconds, and finally the
@@ -457,7 +457,7 @@ class World:
         the options of the render."""
         for name, value in (("x", x), ("y", y)):
             if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
-                raise ValueError(f"{name} must be the number of a pixel, 0 or more, but is {value!r}")
+                raise ValueError(f"{name} must be a pixel coordinate, a whole number of 0 or more, but is {value!r}")
         given = self._all(options)
         answer: dict[str, Any] = json.loads(with_python_names(lambda: self._world.explain(given, (int(x), int(y)))))
         return answer
