@@ -32,11 +32,11 @@ const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
 /// Known causes of differences from Tungsten.
 const CAUSES: [(&str, &str); 3] = [
-    ("coffee", "coats attenuate light by the same mean share in all directions"),
-    ("veach-mis", "the file's metals lack the factor 0.3 and Beckmann's distribution of Tungsten's metals"),
+    ("coffee", "coats attenuate light by the same mean factor in all directions"),
+    ("veach-mis", "the metals in the file lack the factor 0.3 and the Beckmann distribution that Tungsten uses"),
     (
         "water-caustic",
-        "isolated pixels, different in each picture, where the water reflects the light; clamped at 1, +0.2 %",
+        "bright isolated pixels, different in each image, where the water reflects the light; +0.2 % if clamped to 1",
     ),
 ];
 

@@ -62,13 +62,12 @@ fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
 pub fn light(table: &mut Table, samples: u32) -> Result<()> {
     table.head(
         "Light",
-        "Each row compares the measurement of the path tracer with a known answer. The standard error assumes independent\n\
-         samples; the error of Dürer's stratified samples is smaller. A row passes if the difference is at most three standard\n\
-         errors plus 0.1 %. If the formula is an integral without a closed form, the answer is computed by quadrature in double\n\
-         precision.\n\
+        "Each row compares a result of the path tracer with a known answer. The standard error assumes independent samples; the\n\
+         error of Dürer's stratified samples is smaller. A row passes if the difference is at most three standard errors plus\n\
+         0.1 %. If the formula is an integral without a closed form, the answer is computed by quadrature in double precision.\n\
          \n\
-         A number in brackets is the section of CIE 171:2006 whose analytical case tests the same physics; dimensions and values\n\
-         are different. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
+         A number in brackets is the section of CIE 171:2006 with an analytical case that tests the same physics, but with\n\
+         different dimensions and values. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
         "case|formula|>answer|>measured|>difference",
     );
     for case in cases() {

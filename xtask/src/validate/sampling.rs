@@ -114,9 +114,10 @@ pub fn densities(table: &mut Table) -> Result<()> {
     table.head(
         "Sampled directions and their pdf",
         &format!(
-            "Chi-square test with 10^6 samples in 80 x 160 cells of equal solid angle. The deviate is the result as a standard normal\n\
-             deviate. A row passes if it is below {most:.2}, which gives all {} tests together a significance level of 0.01 (Šidák\n\
-             correction). The integral of the pdf is 1 minus the share of samples below the surface.",
+            "Chi-square test with 10^6 samples in 80 x 160 cells of equal solid angle. The last column is the test result, converted\n\
+             to a standard normal deviate. A row passes if this deviate is below {most:.2}, which gives all {} tests together a\n\
+             significance level of 0.01 (Šidák correction). The integral of the pdf is 1 minus the fraction of samples below the\n\
+             surface.",
             rows.len()
         ),
         "sampler|>integral of pdf|>deviate",
