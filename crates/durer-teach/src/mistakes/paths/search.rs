@@ -24,11 +24,16 @@ const RIVAL_RATIO: f64 = 3.0;
 /// Ratio of variances above which one picture counts as noisier than the other.
 const NOISE_RATIO: f64 = 1.5;
 
-/// One mistake with its value, the block means rendered with it, and how well those match the test
-/// picture.
-struct Trial {
+/// One mistake with its value, and the block means rendered with it.
+#[derive(Clone)]
+pub(super) struct Candidate {
     mistake: (&'static Mistake, f32),
     rendered: BlockMeans,
+}
+
+/// How well a candidate reproduces the test picture.
+struct Trial<'c> {
+    candidate: &'c Candidate,
     explained: f64,
     matched: f64,
 }
@@ -36,15 +41,8 @@ struct Trial {
 /// Returns the fraction of the blocks in which a render of the scene differs from the reference by
 /// more than noise.
 pub fn off(input: &DiagnosisInput) -> f64 {
-    let (reference, view, base) = prepare(input);
-    let blocks = blocks(input);
-    let reference = blocks.of_picture(input.job.width, &reference);
-    let base = blocks.render(&view, &base, input.job.seed);
-    share_off(&base, &base.with_noise_of(reference, 1.0))
-}
-
-fn blocks(input: &DiagnosisInput) -> Blocks {
-    Blocks::new(input.job.width, input.job.height, input.job.sampling.samples())
+    let search = Search::new(input);
+    share_off(&search.own, &search.reference_means())
 }
 
 /// Returns, for each block, the variance of the difference between two pictures.
@@ -59,68 +57,96 @@ fn share_off(base: &BlockMeans, reference: &BlockMeans) -> f64 {
 
 /// Tries all mistakes of path tracers. `progress` receives values from 0 to 1.
 pub fn diagnose(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    let (reference_pixels, view, base) = prepare(input);
-    let test_pixels = values(input.test, view.scale, input.transfer);
-    let (width, seed) = (input.job.width, input.job.seed);
-    let blocks = blocks(input);
-    let [reference, test] = [&reference_pixels, &test_pixels].map(|pixels| blocks.of_picture(width, pixels));
-    let own = blocks.render(&view, &base, seed);
-    let reference = own.with_noise_of(reference, 1.0);
-    let test = own.with_noise_of(test, noise_ratio(&reference_pixels, &test_pixels, width as usize).clamp(0.2, 200.0));
+    let search = Search::new(input);
     progress(0.1);
-    let off = share_off(&own, &reference);
-    let diagnosis = Diagnosis {
-        reference_difference: off,
-        formulas: Formulas::of(input.scene, input.world.rules()),
-        ..Diagnosis::default()
-    };
-    if off > MAX_DIFFERENCE {
-        return diagnosis;
-    }
-    let total = own.excess_difference(&test, &noise(&own, &test));
-    let differing = total.iter().filter(|block| block.1).count();
-    if (differing as f64) < MIN_DIFFERENCE * total.len() as f64 {
-        return Diagnosis { remark: Some(of_noise(&reference_pixels, &test_pixels, width as usize)), ..diagnosis };
-    }
-    let trials = trials(&view, &base, &blocks, &test, &own, seed, progress);
-    let explanation = decided(trials, &test);
-    Diagnosis { explanations: explanation, ..diagnosis }
+    let test = values(input.test, search.view.scale, input.transfer);
+    search.diagnose(&test, || search.candidates(progress))
 }
 
-/// Renders the scene with each mistake and measures how much of the difference it explains.
-fn trials(
-    view: &View,
-    base: &SceneVariant,
-    blocks: &Blocks,
-    test: &BlockMeans,
-    own: &BlockMeans,
-    seed: u64,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Vec<Trial> {
-    let lights = base.world.lights().len();
-    let rows = MISTAKES.iter().flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| (row, value)));
-    let all: Vec<(&'static Mistake, f32)> = rows.collect();
-    let count = all.len();
-    let trial = |(i, mistake): (usize, (&'static Mistake, f32))| {
-        let mut variant = base.clone();
-        (mistake.0.apply)(&mut variant, mistake.1);
-        let rendered = blocks.render(view, &variant, seed);
-        progress(0.1 + 0.9 * (i + 1) as f64 / count as f64);
-        let noise = noise(&rendered, test);
-        let (before, rest) = (own.excess_difference(test, &noise), rendered.excess_difference(test, &noise));
-        let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
-        let (either, agree) = before.iter().zip(&rest).fold((0, 0), |(either, agree), (before, rest)| {
-            (either + usize::from(before.1 || rest.1), agree + usize::from(before.1 && !rest.1))
-        });
-        let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
-        Trial { mistake, rendered, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
-    };
-    all.into_iter().enumerate().map(trial).collect()
+/// The correct scene and the reference picture, with which wrong pictures are compared.
+pub(super) struct Search<'a> {
+    input: DiagnosisInput<'a>,
+    reference: Vec<Vec3>,
+    view: View<'a>,
+    base: SceneVariant<'a>,
+    blocks: Blocks,
+    /// Block means of a render without mistakes.
+    own: BlockMeans,
+}
+
+impl<'a> Search<'a> {
+    /// Renders the scene without mistakes.
+    pub(super) fn new(input: &DiagnosisInput<'a>) -> Self {
+        let (reference, view, base) = prepare(input);
+        let blocks = Blocks::new(input.job.width, input.job.height, input.job.sampling.samples());
+        let own = blocks.render(&view, &base, input.job.seed);
+        Search { input: *input, reference, view, base, blocks, own }
+    }
+
+    /// Returns the block means of the reference, with the noise of a render.
+    fn reference_means(&self) -> BlockMeans {
+        self.own.with_noise_of(self.blocks.of_picture(self.input.job.width, &self.reference), 1.0)
+    }
+
+    /// Finds the mistake in a picture. Calls `candidates` only if the reference shows the scene and
+    /// the picture differs from it.
+    pub(super) fn diagnose(&self, picture: &[Vec3], candidates: impl FnOnce() -> Vec<Candidate>) -> Diagnosis {
+        let (width, own) = (self.input.job.width, &self.own);
+        let test = self.blocks.of_picture(width, picture);
+        let ratio = noise_ratio(&self.reference, picture, width as usize);
+        let test = own.with_noise_of(test, ratio.clamp(0.2, 200.0));
+        let off = share_off(own, &self.reference_means());
+        let diagnosis = Diagnosis {
+            reference_difference: off,
+            formulas: Formulas::of(self.input.scene, self.input.world.rules()),
+            ..Diagnosis::default()
+        };
+        if off > MAX_DIFFERENCE {
+            return diagnosis;
+        }
+        let total = own.excess_difference(&test, &noise(own, &test));
+        let differing = total.iter().filter(|block| block.1).count();
+        if (differing as f64) < MIN_DIFFERENCE * total.len() as f64 {
+            return Diagnosis { remark: Some(of_noise(ratio)), ..diagnosis };
+        }
+        let candidates = candidates();
+        let trials = candidates.iter().map(|candidate| trial(candidate, &test, own)).collect();
+        Diagnosis { explanations: decided(trials, &test), ..diagnosis }
+    }
+
+    /// Renders the scene with each mistake.
+    pub(super) fn candidates(&self, progress: &(dyn Fn(f64) + Sync)) -> Vec<Candidate> {
+        let lights = self.base.world.lights().len();
+        let rows =
+            MISTAKES.iter().flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| (row, value)));
+        let all: Vec<(&'static Mistake, f32)> = rows.collect();
+        let count = all.len();
+        let candidate = |(i, mistake): (usize, (&'static Mistake, f32))| {
+            let mut variant = self.base.clone();
+            (mistake.0.apply)(&mut variant, mistake.1);
+            let rendered = self.blocks.render(&self.view, &variant, self.input.job.seed);
+            progress(0.1 + 0.9 * (i + 1) as f64 / count as f64);
+            Candidate { mistake, rendered }
+        };
+        all.into_iter().enumerate().map(candidate).collect()
+    }
+}
+
+/// Measures how much of the difference between the test picture and the scene a candidate explains.
+fn trial<'c>(candidate: &'c Candidate, test: &BlockMeans, own: &BlockMeans) -> Trial<'c> {
+    let noise = noise(&candidate.rendered, test);
+    let (before, rest) = (own.excess_difference(test, &noise), candidate.rendered.excess_difference(test, &noise));
+    let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
+    let (either, agree) = before.iter().zip(&rest).fold((0, 0), |(either, agree), (before, rest)| {
+        (either + usize::from(before.1 || rest.1), agree + usize::from(before.1 && !rest.1))
+    });
+    let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
+    Trial { candidate, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
 }
 
 /// Returns the mistakes that explain the picture. There are none if no mistake fits or if the
 /// choice is ambiguous.
-fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
+fn decided(mut trials: Vec<Trial<'_>>, test: &BlockMeans) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let passes = |trial: &&Trial| trial.explained >= MIN_EXPLAINED && trial.matched >= MIN_MATCHED;
     let Some(best) = trials.iter().find(passes) else { return Vec::new() };
@@ -129,15 +155,21 @@ fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL_RATIO * rest(best) + 0.005).collect();
     // If rivals produce different pictures, naming one of them would be a guess.
     let alike = |other: &Trial| {
-        let noise: Vec<f64> = noise(&best.rendered, test);
-        best.rendered.excess_difference(&other.rendered, &noise).iter().filter(|block| block.1).count() * 20
+        let noise: Vec<f64> = noise(&best.candidate.rendered, test);
+        best.candidate
+            .rendered
+            .excess_difference(&other.candidate.rendered, &noise)
+            .iter()
+            .filter(|block| block.1)
+            .count()
+            * 20
             <= test.mean.len()
     };
     if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
         return Vec::new();
     }
     let explanation = |trial: &&Trial| Explanation {
-        mistakes: vec![trial.mistake],
+        mistakes: vec![trial.candidate.mistake],
         explained: trial.explained,
         matched: trial.matched,
     };
@@ -160,9 +192,9 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
     energy(test) / energy(reference)
 }
 
-/// Describes how the noise of two pictures with the same mean differs.
-fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
-    let ratio = noise_ratio(reference, test, width);
+/// Describes how the noise of two pictures with the same mean differs. `ratio` is the variance of
+/// the test picture divided by that of the reference.
+fn of_noise(ratio: f64) -> String {
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISE_RATIO {
         format!(
