@@ -230,7 +230,7 @@ fn options_of_another_year_do_not_change_the_guess() {
         ("-output o.tga -grid 3 3 3 -shadows", "f12a5", true),
     ] {
         let output = folder.expect_exit(0, &format!("course -input shiny.txt -size 40 40 {options}"));
-        assert_eq!(output.err.contains(&format!("note: read as {dialect}")), expected, "{options}: {}", output.err);
+        assert_eq!(output.err.contains(&format!("read as {dialect}")), expected, "{options}: {}", output.err);
         assert_eq!(output.err.contains("read as"), expected, "{options}: {}", output.err);
         assert_eq!(output.err.matches("read as").count(), usize::from(expected));
     }

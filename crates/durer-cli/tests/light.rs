@@ -113,7 +113,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let folder = lit();
     folder.write("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
     let output = folder.expect_exit(2, "render lit.txt -o p.png").err;
-    assert!(output.contains("lamp.ies:5:6") && output.contains("must ascend"), "{output}");
+    assert!(output.contains("lamp.ies:5:6") && output.contains("must be in ascending order"), "{output}");
     assert!(!folder.path("p.png").exists());
     folder.write("lamp.ies", LIGHT);
     folder.write("name.txt", LIT.replace("preset gold", "preset golt"));

@@ -21,7 +21,7 @@ fn invalid_scene_gives_all_errors_with_their_places() {
             "^^^^^^",
             "did you mean `Sphere`?",
             "needs a number",
-            "note[dialect]: read as f04",
+            "note[dialect]: the scene is read as f04",
         ],
     );
     let quiet = folder.expect_exit(2, "render bad.txt -o p.png --quiet");

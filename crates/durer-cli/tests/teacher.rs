@@ -251,7 +251,7 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     // names the keyword and its equivalent.
     folder.write("nodes.txt", nodes);
     let errors = folder.run("check nodes.txt").out;
-    assert!(errors.contains("`angle` is not a word of f23") && errors.contains("in f23 it is `fov`"), "{errors}");
+    assert!(errors.contains("`angle` is not a word of f23") && errors.contains("write `fov` in f23"), "{errors}");
     let wide: Vec<u8> = SCENE.bytes().flat_map(|b| [b, 0]).collect();
     folder.write("wide.txt", [&[0xff, 0xfe][..], &wide].concat());
     let output = folder.expect_exit(2, "render wide.txt -q -o words.png");
@@ -261,7 +261,7 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     assert!(output.err.contains("binary") && output.err.lines().count() < 8, "{}", output.err);
     // The message about a light with a zero direction must not be the one for the camera.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
-    says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
+    says("", &scene("f12a4", &[still]), "the `direction` of a light is the direction in which the light shines");
     // A scene that the official program of its year would reject gets a note.
     folder.write("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let output = folder.run("check brace.txt --dialect f04 --bounces 3");

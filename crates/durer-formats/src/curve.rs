@@ -43,22 +43,28 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, ParseError> 
             let column_index =
                 column.map_or(Some(1), |name| words.iter().position(|word| *word == name).filter(|&i| i > 0));
             let columns = words[1..].join(", ");
-            let missing = || format!("no column `{}`: the columns are {columns}", column.unwrap_or_default());
+            let missing =
+                || format!("the file has no column `{}`: the columns are {columns}", column.unwrap_or_default());
             number = Some(column_index.ok_or_else(|| (place, missing()))?);
             continue;
         };
         if let (Some(name), None) = (column, number) {
-            return Err((place, format!("no column `{name}`: no row of names precedes the numbers")));
+            return Err((
+                place,
+                format!("the file has no column `{name}`, because no row of names precedes the numbers"),
+            ));
         }
-        let word = words.get(number.unwrap_or(1)).ok_or_else(|| (place.clone(), "a value is missing".to_string()))?;
+        let word = words
+            .get(number.unwrap_or(1))
+            .ok_or_else(|| (place.clone(), "the value after the wavelength is missing".to_string()))?;
         let value = word.parse().ok().filter(|value: &f32| value.is_finite() && *value >= 0.0);
         let value =
             value.ok_or_else(|| (place.clone(), format!("`{word}` is not a spectral value: it must be 0 or more")))?;
         if !(nm > 0.0 && nm.is_finite()) || rows.last().is_some_and(|last| last[0] >= nm) {
-            return Err((place, "wavelengths must be more than 0 and ascend".into()));
+            return Err((place, "wavelengths must be more than 0 and in ascending order".into()));
         }
         if rows.len() == MAX_ROWS {
-            return Err((place, format!("a spectrum has at most {MAX_ROWS} rows")));
+            return Err((place, format!("a spectrum can have at most {MAX_ROWS} rows")));
         }
         rows.push([nm, value]);
     }

@@ -60,7 +60,8 @@ impl ResourceLimits {
         match self.objects.get() <= MAX_OBJECTS {
             true => Ok(()),
             false => {
-                Err(self.over(format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance")))
+                Err(self
+                    .over(format!("the scene has more than {MAX_OBJECTS} objects, counting those of every instance")))
             }
         }
     }

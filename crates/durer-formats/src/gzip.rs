@@ -41,13 +41,13 @@ pub fn decompress(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
     let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > most {
-        return Err(format!("the gzip file is too large: {declared} bytes unpacked"));
+        return Err(format!("the gzip file is too large, because it unpacks to {declared} bytes"));
     }
     let mut all = Vec::new();
     let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
     match decoder.read_to_end(&mut all) {
         Ok(_) if all.len() as u64 <= most => Ok(all.into()),
-        Ok(_) => Err(format!("the gzip file is too large: more than {most} bytes unpacked")),
+        Ok(_) => Err(format!("the gzip file is too large, because it unpacks to more than {most} bytes")),
         Err(error) => Err(format!("cannot unpack the gzip file: {error}")),
     }
 }

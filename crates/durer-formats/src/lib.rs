@@ -141,8 +141,8 @@ pub fn read_mesh_as(
 /// Returns an error if a file of this size is too large for spans, which have 32-bit offsets.
 fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
     const MAX_SIZE: u64 = u32::MAX as u64 - 1;
-    let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MAX_SIZE}");
-    (size > MAX_SIZE).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
+    let message = || format!("`{name}` has {size} bytes, but a mesh file can have at most {MAX_SIZE} bytes");
+    (size > MAX_SIZE).then(|| Diagnostic::error(message()).help("split the mesh into several files"))
 }
 
 /// Returns the extension of a file name in lower case, without the leading dot, or an empty string

@@ -68,13 +68,13 @@ impl Medium {
             return None;
         }
         if self.density.is_some() {
-            report.unsupported_once(at, "a medium around the camera must be homogeneous: this one is left out");
+            report.unsupported_once(at, "a medium around the camera must be homogeneous: this medium is left out");
             return None;
         }
         if extinction.min_element() < 0.99 * most {
             report.unsupported_once(
                 at,
-                "a medium around the camera has one extinction for all colours: the largest is used",
+                "a medium around the camera can have only one extinction for all colours: the largest is used",
             );
         }
         let (color, anisotropy) = (self.scattering / most, self.anisotropy);

@@ -130,7 +130,7 @@ pub(super) fn report_number(report: &mut Report, error: NumberError, at: Range<u
         NumberError::Malformed => {
             let point: Vec<u8> = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect();
             let help = (point != word && parse_f32(&point).is_ok())
-                .then(|| format!("decimals are written with a point: {}", quoted(&point)));
+                .then(|| format!("write decimals with a point: {}", quoted(&point)));
             report.error(at, format!("expected a number, found {}", quoted(word))).help = help;
         }
     }

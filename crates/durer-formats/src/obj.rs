@@ -189,7 +189,7 @@ fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, repo
         let word = &bytes[first.clone()];
         let suggestion = did_you_mean(&quoted(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
         let statements = count_text(count, "statement", "statements");
-        let message = format!("{statements} not understood and left out; the first is {}", quoted(word));
+        let message = format!("left out {statements} with an unknown keyword; the first is {}", quoted(word));
         report.warning(first, message).help = suggestion.map(|name| format!("did you mean `{name}`?"));
     }
     before

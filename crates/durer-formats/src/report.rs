@@ -123,6 +123,16 @@ pub(super) fn count_text(count: usize, one: &str, many: &str) -> String {
     }
 }
 
+/// Formats which items exist if they are numbered from 0: `no vertices`, `only vertex 0`, `only the
+/// vertices 0 to 7`.
+pub(super) fn range_text(count: usize, one: &str, many: &str) -> String {
+    match count {
+        0 => format!("no {many}"),
+        1 => format!("only {one} 0"),
+        _ => format!("only the {many} 0 to {}", count - 1),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -113,7 +113,9 @@ fn set_view(
 /// Reports that Radiance's view files are not supported by this build.
 #[cfg(not(feature = "radiance"))]
 fn set_view(_: &mut Scene, _: &ReadInput, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
-    diagnostics.push(Diagnostic::error(format!("`{name}`: this build cannot read views of Radiance")));
+    diagnostics.push(Diagnostic::error(format!(
+        "`{name}` cannot be used, because this build does not read views of Radiance"
+    )));
     None
 }
 

@@ -59,13 +59,13 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         end: start.trim_ascii_end().len() as u32,
     });
     Some(error.help(match (own, what.starts_with("a picture")) {
-        (Some(own), _) => format!("rename it to `{stem}.{own}`"),
+        (Some(own), _) => format!("rename the file to `{stem}.{own}`"),
         (None, _) if *what == LUMINAIRE => {
-            format!("it is used in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")
+            format!("use the file in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")
         }
-        (None, _) if what.contains("archive") => "unpack it: the scene may be inside".into(),
-        (None, true) => "a picture is not a model; use `--environment` to put it around a model".into(),
-        (None, false) => "this format is not supported: convert it to glTF".into(),
+        (None, _) if what.contains("archive") => "unpack the archive, which may contain the scene".into(),
+        (None, true) => "a picture is not a model; use `--environment` to put the picture around a model".into(),
+        (None, false) => "this format is not supported: convert the file to glTF".into(),
     }))
 }
 
@@ -81,15 +81,15 @@ mod tests {
         };
         assert_eq!(
             messages(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
-            "`b.c.obj` is binary glTF, according to its first bytes (rename it to `b.c.glb`)"
+            "`b.c.obj` is binary glTF, according to its first bytes (rename the file to `b.c.glb`)"
         );
         assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
-        assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
+        assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert the file to glTF"));
         assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
-        assert!(messages(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("it is used in a scene"));
+        assert!(messages(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("use the file in a scene"));
         assert!(messages(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
-        assert!(messages(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack it"));
+        assert!(messages(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack the archive"));
         assert_eq!(messages(b"glTF", "b.gltf", &["gltf", "glb"]), None);
         assert_eq!(messages(b"ply\n", "b.ply", &["ply"]), None);
         assert_eq!(messages(b"plywood", "b.obj", &["obj"]), None);

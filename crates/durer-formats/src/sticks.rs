@@ -43,10 +43,10 @@ pub(super) fn message(lines: usize, points: usize) -> String {
         [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
             (0, _) => String::new(),
             (_, 1) => count_text(count, one, many),
-            (_, step) => format!("{count} {many}, of which one in {step} is shown,"),
+            (_, step) => format!("one in {step} of {count} {many}"),
         });
     let all = all.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" and ");
-    format!("{all} without a surface: thin sticks and small balls are shown")
+    format!("lines and points have no surface: thin sticks and small balls are shown for {all}")
 }
 
 /// Builds a triangle mesh with thin sticks for the lines between vertices, and small balls for

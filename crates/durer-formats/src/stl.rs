@@ -68,15 +68,15 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
 
 fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let Some(count) = promised(bytes) else {
-        let message = format!("a binary STL file has at least {HEAD} bytes, but this one has {}", bytes.len());
-        report.error(0..bytes.len().min(HEAD), message).help = Some("a text file begins with the word `solid`".into());
+        let message = format!("a binary STL file has at least {HEAD} bytes, but this file has {} bytes", bytes.len());
+        report.error(0..bytes.len().min(HEAD), message).help = Some("begin a text file with the word `solid`".into());
         return;
     };
     let (facets, rest) = bytes[HEAD..].as_chunks::<FACET>();
     let facets = match (facets.len() as u64).cmp(&u64::from(count)) {
         std::cmp::Ordering::Less => {
             let there = count_text(facets.len(), "facet", "facets");
-            report.error(80..84, format!("the header promises {count} facets, but the file ends after {there}"));
+            report.error(80..84, format!("the header declares {count} facets, but the file ends after {there}"));
             return;
         }
         order => {
@@ -98,7 +98,7 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
             continue;
         }
         let at = HEAD + FACET * number;
-        report.error(at..at + FACET, format!("facet {} has a corner that is not finite", number + 1));
+        report.error(at..at + FACET, format!("facet {} has a vertex with an infinite coordinate or NaN", number + 1));
         if report.is_full() {
             return;
         }

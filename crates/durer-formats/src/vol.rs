@@ -51,7 +51,7 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), ParseError> {
 /// `channels` lists the numbers of channels that the caller can handle.
 fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), ParseError> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
-        return Err((0, "not a Mitsuba volume file: it must begin with `VOL` and version 3".into()));
+        return Err((0, "a Mitsuba volume file must begin with `VOL` and version 3".into()));
     }
     let word = |at: usize| -> Result<[u8; 4], ParseError> {
         let found = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
@@ -70,7 +70,7 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
     let own = whole(20)?;
     let Some(&channels) = channels.iter().find(|&&n| own == n as i32) else {
         let wanted: Vec<String> = channels.iter().map(usize::to_string).collect();
-        return Err((20, format!("expected {} channel, found {own}", wanted.join(" or "))));
+        return Err((20, format!("the volume must have {} channel, but has {own}", wanted.join(" or "))));
     };
     let min = Vec3::new(real(24)?, real(28)?, real(32)?);
     let max = Vec3::new(real(36)?, real(40)?, real(44)?);
@@ -89,7 +89,10 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
     let values: Vec<f32> = values.map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
     let bad = values.iter().position(|x| !x.is_finite() || *x < 0.0);
     if let Some(bad) = bad {
-        return Err((HEADER + 4 * bad, format!("density {} is {}: it must be 0 or more", bad + 1, values[bad])));
+        return Err((
+            HEADER + 4 * bad,
+            format!("density number {} is {}, but must be 0 or more", bad + 1, values[bad]),
+        ));
     }
     Ok((Aabb { min, max }, counts.map(|n| n as u32), channels, values))
 }

@@ -103,7 +103,7 @@ impl<'a> Xml<'a> {
     pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Box<Diagnostic>> {
         let span = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
         if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-            let error = Diagnostic::error("the text is in UTF-16").help("save it in UTF-8");
+            let error = Diagnostic::error("the text is in UTF-16").help("save the file in UTF-8");
             return Err(error.code("bad-file").at(span(0, 2)).into());
         }
         let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -157,7 +157,7 @@ impl<'a> Xml<'a> {
                 }
                 events::Event::DocType(_) => {
                     let what = "document type declarations (`<!DOCTYPE`) are not supported";
-                    let help = "remove it, and replace its entities by their text";
+                    let help = "remove the declaration, and replace its entities with their text";
                     return Err(self.wrong(self.span(start, end), what).help(help).into());
                 }
                 events::Event::Eof => {

@@ -37,7 +37,7 @@ impl<'a> Zip<'a> {
         while let Some(entry) = entries.next_entry().map_err(|error| error.to_string())? {
             let Ok(name) = std::str::from_utf8(entry.file_path().as_bytes()).map(str::to_string) else { continue };
             if parts.len() >= MAX_PARTS {
-                return Err(format!("more than {MAX_PARTS} parts in an archive"));
+                return Err(format!("the archive has more than {MAX_PARTS} parts"));
             }
             let part = (entry.wayfinder(), entry.compression_method(), entry.uncompressed_size_hint());
             if parts.insert(name.clone(), part).is_some() {

@@ -164,9 +164,11 @@ impl Reader<'_, '_> {
             let many = words.len() > 24;
             words.retain(|word| !many || !word.ends_with("Texture"));
             match after_path {
-                true => "a path ends at the first space".into(),
-                false if many => format!("its fields are {}; most also have a `...Texture`", words.join(", ")),
-                false => format!("its fields are {}", words.join(", ")),
+                true => "a path cannot contain spaces".into(),
+                false if many => {
+                    format!("`{name}` has the fields {}; most have a `...Texture` field too", words.join(", "))
+                }
+                false => format!("`{name}` has the fields {}", words.join(", ")),
             }
         });
         let help = super::suggestions::misplaced(word, name).map_or(help, String::from);
@@ -174,7 +176,7 @@ impl Reader<'_, '_> {
             Ok(_) => format!("unexpected number {} in `{name}`", quoted(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", quoted(word.as_bytes())),
         };
-        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not allowed here").help(help);
         self.error(self.with_suggestion(error, word, span, known()));
         self.skip_value();
     }
@@ -206,7 +208,7 @@ impl Reader<'_, '_> {
             let span = start.join(self.last_span());
             if let Some(drawn) = self.accepts_any_values().then(|| field.quirk_value(item, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
-                self.diagnostics.push(warning.effect("rendered anyway, as the official program does"));
+                self.diagnostics.push(warning.effect("the scene is rendered anyway, as in the official program"));
                 return Some(drawn);
             }
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
@@ -214,7 +216,8 @@ impl Reader<'_, '_> {
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
                 Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
-                    "for a light, it is the direction in which the light shines; for a camera, the point to look at minus the eye point",
+                    "the `direction` of a light is the direction in which the light shines, and the `direction` of a \
+                     camera is the point to look at minus the eye point",
                 ),
                 _ => error,
             });
@@ -238,7 +241,7 @@ impl Reader<'_, '_> {
         let message = format!("`{field}` cannot be {}", quoted(text.as_bytes()));
         let help = match did_you_mean(&text, words.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("it is one of {list}"),
+            None => format!("`{field}` must be one of {list}"),
         };
         self.error(Diagnostic::error(message).at(token.span).help(help));
         None
@@ -321,7 +324,7 @@ impl Reader<'_, '_> {
         {
             let span = self.advance();
             let warning = Diagnostic::warning(format!("{} is a hexadecimal number", quoted(text.as_bytes()))).at(span);
-            self.diagnostics.push(warning.effect(format!("interpreted as {value}, as the official program does")));
+            self.diagnostics.push(warning.effect(format!("the number is read as {value}, as in the official program")));
             return Some(value);
         }
         match text.parse::<f32>() {
@@ -422,7 +425,7 @@ impl Reader<'_, '_> {
         } else {
             let warning = Diagnostic::warning(message).code("foreign-word").at(span);
             self.diagnostics.push(match super::suggestions::word_in_dialect(word, dialect) {
-                Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
+                Some(here) => warning.help(format!("write `{here}` in {}", dialect.name())),
                 None => warning,
             });
         }
@@ -436,7 +439,7 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
     let point = bare.replace(',', ".");
     if is_number(&point) && bare.contains(',') && !bare.contains('.') {
-        let help = "use a decimal point, and only spaces between numbers";
+        let help = "write decimals with a point, and separate numbers with spaces only";
         Some((help.into(), Some(point).filter(|_| bare == text)))
     } else if bare.contains(',') || bare != text && is_number(bare) {
         let parts: Vec<&str> = bare.split(',').filter(|part| !part.is_empty()).collect();
@@ -448,13 +451,13 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
         let help = format!("separate a word and its value with spaces only: remove the `{text}`");
         Some((help, Some(String::new())))
     } else if is_number(&text.replace(['O', 'o'], "0")) && text.contains(['O', 'o']) {
-        Some(("the word has the letter O in place of a zero".into(), Some(text.replace(['O', 'o'], "0"))))
+        Some(("write the digit 0 in place of the letter O".into(), Some(text.replace(['O', 'o'], "0"))))
     } else {
         let number = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°' || c == '%');
         let unit = &text[number.len()..];
         let help = || match unit {
-            "rad" => "angles are in degrees, without a unit".into(),
-            "deg" | "°" => "angles are in degrees, without a unit".into(),
+            "rad" => "write angles in degrees, without a unit".into(),
+            "deg" | "°" => "write angles in degrees, without a unit".into(),
             _ => format!("numbers have no units: remove `{unit}`"),
         };
         let same = ["deg", "°", "px", "m"].contains(&unit);

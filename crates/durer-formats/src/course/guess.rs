@@ -48,13 +48,13 @@ impl Guess {
     /// Returns a note that explains the guess to the user.
     pub fn note(&self) -> Diagnostic {
         let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
-        let mut message = format!("read as {}", self.dialect.name());
+        let mut message = format!("the scene is read as {}", self.dialect.name());
         if !reasons.is_empty() {
             message += &format!(": {}", reasons.join("; "));
         }
         if !self.others.is_empty() {
             let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
-            message += &format!(" (it could also be {})", names.join(", "));
+            message += &format!(" (other possibilities are {})", names.join(", "));
         }
         Diagnostic::note(message).code("dialect")
     }
@@ -105,9 +105,9 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
             (set::F03, format!("`{word}` inside a group is syntax of 2003"))
         } else if word == "cubeMap" && exists(&format!("{}/left.png", text(i + 1))) {
-            (set::F16, "its cube map has PNG files".into())
+            (set::F16, "the cube map has PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
-            (set::F12A5, "its cube map has BMP files".into())
+            (set::F12A5, "the cube map has BMP files".into())
         } else if named && matches!(&*word, "include" | "define" | "use") {
             (set::DURER, format!("`{word}` is a Dürer extension"))
         } else if named
@@ -138,7 +138,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         // them.
         let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
         let keep = if nodes { set::F23 } else { 0 };
-        narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
+        narrow(keep, "the file has comments, which the course's language lacks".into(), Some(comment.span));
     }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);

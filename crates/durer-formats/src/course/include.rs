@@ -107,7 +107,7 @@ impl IncludePreprocessor<'_, '_, '_> {
                 Some(format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"))
             }
             () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are included")),
-            () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
+            () if self.words > MAX_WORDS => Some("the scene and its included files have too many words".to_string()),
             () => None,
         };
         if let Some(message) = refused {
@@ -126,7 +126,7 @@ impl IncludePreprocessor<'_, '_, '_> {
                 return Vec::new();
             }
             IncludedFile::NoFolder => {
-                let message = "a text without a folder cannot include files";
+                let message = "a scene that is not stored in a folder cannot include files";
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.join(at)));
                 return Vec::new();
             }

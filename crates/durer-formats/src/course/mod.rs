@@ -87,7 +87,7 @@ fn not_text_reason(bytes: &[u8]) -> Option<&'static str> {
     let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;
     let count = head.iter().filter(odd).count();
     let binary = head.contains(&0) || count * 20 > head.len();
-    binary.then_some("this file is binary, not text: is it a picture or a model in place of a scene?")
+    binary.then_some("this file is not a scene, because it contains binary data instead of text")
 }
 
 #[cfg(test)]

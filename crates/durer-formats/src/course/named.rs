@@ -98,7 +98,7 @@ impl Reader<'_, '_> {
         };
         if let Some((_, _, first)) = self.named.objects.get(&name) {
             let error = Diagnostic::error(format!("`{name}` is defined already")).code("repeated").at(span);
-            let error = error.related(*first, "the first is here");
+            let error = error.related(*first, "the first definition is here");
             return self.error(error);
         }
         let count = count(&object);

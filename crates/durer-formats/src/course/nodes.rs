@@ -84,9 +84,10 @@ impl Reader<'_, '_> {
             match word.as_str() {
                 "Transform" => {
                     if let Some(first) = transform_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one transform; the last one is used").at(span);
-                        let warning = warning.related(first, "the first is here");
-                        self.diagnostics.push(warning.help("nested nodes have one each"));
+                        let warning =
+                            Diagnostic::warning("a node can have only one transform; the last one is used").at(span);
+                        let warning = warning.related(first, "the first transform is here");
+                        self.diagnostics.push(warning.help("use nested nodes to combine several transforms"));
                     }
                     inside.ops = Some(self.node_matrices(span));
                 }
@@ -100,8 +101,9 @@ impl Reader<'_, '_> {
                 }
                 "Component<Material>" => {
                     if let Some(first) = material_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one material; the last one is used").at(span);
-                        self.diagnostics.push(warning.related(first, "the first is here"));
+                        let warning =
+                            Diagnostic::warning("a node can have only one material; the last one is used").at(span);
+                        self.diagnostics.push(warning.related(first, "the first material is here"));
                     }
                     inside.material = self.component_index(span).or(inside.material);
                 }
@@ -216,7 +218,7 @@ impl Reader<'_, '_> {
         let Some((_, first_span)) = first.filter(|(word, _)| word == "type") else {
             let span = at(self, 1).map_or(keyword, |(_, span)| span);
             let error = Diagnostic::error(format!("`{name}` must begin with its `type`")).at(span);
-            self.error(error.help(format!("types are {}", known.join(", "))));
+            self.error(error.help(format!("known types are {}", known.join(", "))));
             if self.at_open() {
                 self.skip_block();
             }
@@ -227,7 +229,7 @@ impl Reader<'_, '_> {
             return Some(kind);
         }
         let error = Diagnostic::error(format!("`{name}` has no type {}", quoted(kind.as_bytes()))).at(span);
-        let list = format!("types are {}", known.join(", "));
+        let list = format!("known types are {}", known.join(", "));
         self.error(
             error.help(
                 did_you_mean(&kind, known.iter().copied()).map_or(list, |near| format!("did you mean `{near}`?")),

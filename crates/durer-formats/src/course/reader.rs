@@ -99,7 +99,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         if !self.options.strict {
             let slashes = comments.iter().find(|c| self.texts.at(c.span).starts_with(b"/"));
             if let Some(comment) = slashes {
-                let message = "comments begin with `#`; this one is ignored anyway";
+                let message = "comments begin with `#`, but this comment with `//` is ignored too";
                 let slashes = Span { end: comment.span.start + 2, ..comment.span };
                 let warning = Diagnostic::warning(message).code("comment").at(comment.span);
                 self.diagnostics.push(warning.fix(slashes, "#"));

@@ -18,17 +18,18 @@ impl Reader<'_, '_> {
             let message = format!("`{}` is not allowed in `{}`", self.text(span), self.text(block));
             let error = Diagnostic::error(message).code("unclosed-block").at(span);
             let (before, brace) = (Span { end: span.start, ..span }, "}\n");
-            let error = error.label("is there a `}` missing before this?").fix(before, brace);
+            let error = error.label("a `}` is probably missing before this word").fix(before, brace);
             self.error(error.related(block, "opened here"));
         }
     }
 
     /// Reopens the block that the last `}` closed, because that brace was superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
-        let message = format!("this `}}` ends `{}` after {found} of its elements, but more follow", self.text(keyword));
+        let message =
+            format!("this `}}` ends `{}` after {found} of its elements, but more elements follow", self.text(keyword));
         let brace = self.last_span();
         let error = Diagnostic::error(message).code("extra-brace").at(brace).fix(brace, "");
-        self.error(error.label("is this `}` superfluous?"));
+        self.error(error.label("this `}` is probably superfluous"));
         self.blocks.push(keyword);
     }
 
@@ -80,10 +81,10 @@ impl Reader<'_, '_> {
             Ok(_) => format!("unexpected number {} {place}", quoted(word.as_bytes())),
             Err(_) => format!("unknown word {} {place}", quoted(word.as_bytes())),
         };
-        let list = || format!("known here: {}", known.join(", "));
+        let list = || format!("the words allowed here are {}", known.join(", "));
         let help = misplaced(word, place).map(String::from);
         let help = help.or_else(|| self.advice(word, known.iter().copied())).unwrap_or_else(list);
-        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not allowed here").help(help);
         self.error(self.with_suggestion(error, word, span, known.iter().copied()));
         while let Some(token) = self.peek() {
             match token.kind {
@@ -133,7 +134,7 @@ impl Reader<'_, '_> {
             let remark =
                 common_mistake(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
             return Some(match (counterpart(word, self.options.dialect), remark) {
-                (Some(there), _) if there == near => format!("in {year} it is `{near}`"),
+                (Some(there), _) if there == near => format!("write `{near}` in {year}"),
                 (_, Some(remark)) => format!("did you mean `{near}`? {remark}"),
                 _ => format!("did you mean `{near}`?"),
             });
@@ -141,11 +142,11 @@ impl Reader<'_, '_> {
         let set = dialects_of(word)?;
         let nodes = self.options.dialect == Dialect::F23;
         if let Some(there) = counterpart(word, self.options.dialect) {
-            return Some(format!("it is a word of {}; in {year} it is `{there}`", names(set)));
+            return Some(format!("`{word}` is a word of {}; write `{there}` in {year}", names(set)));
         }
         if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
-            return Some(format!("it is a word of {}", names(set)));
+            return Some(format!("`{word}` is a word of {}", names(set)));
         }
-        block_of(word).map(|home| format!("it belongs in a `{home}`"))
+        block_of(word).map(|home| format!("`{word}` belongs in a `{home}` block"))
     }
 }

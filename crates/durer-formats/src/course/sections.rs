@@ -68,16 +68,16 @@ impl Reader<'_, '_> {
             } else if token.kind == TokenKind::Close {
                 let message = "this `}` has no matching `{`";
                 let error = Diagnostic::error(message).code("extra-brace").at(span).fix(span, "");
-                self.error(error.help("is there an extra `}` before it?"));
+                self.error(error.help("look for an extra `}` further up"));
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
             } else if word != "define" {
                 // A scene can have only one camera of any kind.
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
-                    let message = format!("this is another `{kind}`: only the last is used");
+                    let message = format!("the scene has more than one `{kind}`; only the last one is used");
                     let warning = Diagnostic::warning(message).code("repeated").at(span);
-                    let warning = warning.related(*first, "the first is here");
+                    let warning = warning.related(*first, "the first one is here");
                     self.diagnostics.push(warning);
                 } else {
                     seen.push((kind, span));
@@ -141,7 +141,7 @@ impl Reader<'_, '_> {
                     self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
                 }
                 if let Some((_, first)) = count {
-                    let message = format!("`{word}` is given twice; the last counts");
+                    let message = format!("`{word}` is given twice; the last one is used");
                     let warning = Diagnostic::warning(message).code("repeated").at(span);
                     self.diagnostics.push(warning.related(first, "first given here"));
                 }
@@ -316,11 +316,11 @@ impl Reader<'_, '_> {
             let error = Diagnostic::error(format!("unknown preset `{name}`")).code("unknown-word").at(span);
             self.error(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => error.help("`durer words preset` lists them"),
+                None => error.help("run `durer words preset` to list the presets"),
             });
         } else if !first {
             let error = Diagnostic::error("`preset` must come first in its block").at(word);
-            self.error(error.help("it sets all fields; those that follow change it"));
+            self.error(error.help("`preset` sets all fields, so write the fields with other values after it"));
         }
     }
 
@@ -328,7 +328,7 @@ impl Reader<'_, '_> {
     fn check_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
         if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
-            let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
+            let message = format!("material {own} may use only earlier materials, not material {index}");
             self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, in file order"));
         }
     }

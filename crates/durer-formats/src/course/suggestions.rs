@@ -43,12 +43,12 @@ const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
     (
         "rotation",
         &["YRotate", "y_rotate"],
-        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+        "`XRotate`, `YRotate` and `ZRotate` rotate about one axis, and `Rotate { x y z angle }` about any axis",
     ),
     (
         "rotate",
         &["YRotate", "y_rotate"],
-        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+        "`XRotate`, `YRotate` and `ZRotate` rotate about one axis, and `Rotate { x y z angle }` about any axis",
     ),
     ("move", &["Translate", "translate"], ""),
     ("translation", &["Translate", "translate"], ""),

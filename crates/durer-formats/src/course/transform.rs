@@ -22,14 +22,14 @@ impl Reader<'_, '_> {
             if let Some(op) = self.matrix(&word, span) {
                 if objects > 0 && !late {
                     late = true;
-                    let message = "a transform's matrices come before its object";
+                    let message = "the matrices of a `Transform` must come before its object";
                     self.error(Diagnostic::error(message).at(span));
                 }
                 self.check_flat(op, span);
                 ops.extend(op);
             } else if word == "MaterialIndex" {
                 let error = Diagnostic::error("`MaterialIndex` is not allowed in a `Transform`").at(span);
-                self.error(error.help("write it before the `Transform`"));
+                self.error(error.help("write `MaterialIndex` before the `Transform`"));
                 self.skip_value();
             } else if block_of(&word) != Some("Group") {
                 let known: Vec<&str> =
@@ -38,7 +38,7 @@ impl Reader<'_, '_> {
             } else {
                 objects += 1;
                 if objects == 2 {
-                    let error = Diagnostic::error("a `Transform` has exactly one object").at(span);
+                    let error = Diagnostic::error("a `Transform` can contain only one object").at(span);
                     self.error(error.help("put several objects into a `Group`"));
                 }
                 let read = self.object(&word, span);
@@ -72,7 +72,9 @@ impl Reader<'_, '_> {
             let at = span.join(self.last_span());
             if self.accepts_any_values() {
                 let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
-                return self.diagnostics.push(warning.effect("applied anyway, as the official program does"));
+                return self
+                    .diagnostics
+                    .push(warning.effect("the matrix is applied anyway, as in the official program"));
             }
             self.error(error.at(at));
         }
@@ -211,16 +213,16 @@ pub(crate) fn flat_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
         MatrixOp::UniformScale(s) => s == 0.0,
         _ => false,
     };
-    let error = Diagnostic::error("a scale by 0 flattens space and has no inverse").code("flat-transform");
-    flat.then(|| error.help("use a scale of 1 along axes that keep their size"))
+    let error = Diagnostic::error("a scale factor of 0 flattens space and has no inverse").code("flat-transform");
+    flat.then(|| error.help("use a factor of 1 along axes that keep their size"))
 }
 
 /// Returns an error if the values of a complete matrix are not valid.
 pub(crate) fn invalid_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
     match op {
-        MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
-            Some(Diagnostic::error("an axis of 0 0 0 has no direction").help("write the axis first, then the angle"))
-        }
+        MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => Some(
+            Diagnostic::error("the axis of a rotation must not be 0 0 0").help("write the axis first, then the angle"),
+        ),
         MatrixOp::Matrix(rows) if rows[12..] != [0.0, 0.0, 0.0, 1.0] => {
             let error = Diagnostic::error("the last row of a matrix must be 0 0 0 1");
             Some(error.help("`Matrix` of 2003 and 2004 lists rows, `Matrix4f` lists columns"))

@@ -102,7 +102,7 @@ impl Model<'_> {
         let code = at.integer(..)?;
         let component = ComponentType::of(code);
         if component.is_none() {
-            at.error("VALUE_NOT_IN_LIST", format!("invalid value {code}: not a component type"));
+            at.error("VALUE_NOT_IN_LIST", format!("value {code} is not a component type"));
         }
         component
     }
@@ -157,14 +157,15 @@ impl Model<'_> {
     fn sparse(&self, at: &JsonRef, accessor: &Accessor) -> Option<SparseValues> {
         let count = at.required("count")?.integer(1..)? as usize;
         if count > accessor.count {
-            let message = format!("{count} rows are replaced, but the accessor has {}", accessor.count);
+            let message =
+                format!("the sparse data replace {count} rows, but the accessor has only {} rows", accessor.count);
             at.get("count").unwrap_or(*at).error("ACCESSOR_SPARSE_COUNT_OUT_OF_RANGE", message);
             return None;
         }
         let (indices, values) = (at.required("indices")?, at.required("values")?);
         let component = self.component(&indices.required("componentType")?)?;
         if matches!(component, ComponentType::I8 | ComponentType::I16 | ComponentType::F32) {
-            indices.error("VALUE_NOT_IN_LIST", "indices must be unsigned whole numbers");
+            indices.error("VALUE_NOT_IN_LIST", "sparse indices must be unsigned integers");
             return None;
         }
         let place = |at: &JsonRef, size: usize| {
@@ -190,11 +191,11 @@ impl Model<'_> {
         for i in 0..count {
             let index = sparse.index(i);
             if index as usize >= accessor.count {
-                indices.error("ACCESSOR_SPARSE_INDEX_OOB", format!("row {index} is out of range"));
+                indices.error("ACCESSOR_SPARSE_INDEX_OOB", format!("sparse index {index} is out of range"));
                 return None;
             }
             if previous.is_some_and(|previous| index <= previous) {
-                indices.error("ACCESSOR_SPARSE_INDICES_NON_INCREASING", "indices must strictly increase");
+                indices.error("ACCESSOR_SPARSE_INDICES_NON_INCREASING", "sparse indices must strictly increase");
                 return None;
             }
             previous = Some(index);
@@ -249,8 +250,10 @@ impl Accessor {
         }
         let end = self.stride().checked_mul(self.count - 1).and_then(|end| end.checked_add(self.offset + self.row()));
         if end.is_none_or(|end| end > bytes) {
-            let message =
-                format!("{} rows from byte {} on do not fit into a view of {bytes} bytes", self.count, self.offset);
+            let message = format!(
+                "{} rows from byte {} on do not fit into a buffer view of {bytes} bytes",
+                self.count, self.offset
+            );
             at.error("ACCESSOR_TOO_LONG", message);
             return None;
         }
@@ -283,7 +286,7 @@ impl Accessor {
             numbers.iter().all(is_finite)
         };
         if let Some(i) = (0..self.count).into_par_iter().with_min_len(1 << 13).find_first(|i| !is_sound(i)) {
-            at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} has a number that is infinite or NaN"));
+            at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} contains an infinite value or NaN"));
         }
     }
 

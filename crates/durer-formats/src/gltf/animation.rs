@@ -33,7 +33,9 @@ impl Model<'_> {
     pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
         let (at, animations) = match (self.input.scene_defaults.animation_time, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
-            (Some(_), None) => return root.warning("no-animation", "the file has no animation: `--at` has no effect"),
+            (Some(_), None) => {
+                return root.warning("no-animation", "`--at` has no effect, because the file has no animation");
+            }
             (None, Some(animations)) => return at_rest(&animations),
             (None, None) => return,
         };
@@ -150,12 +152,12 @@ fn at_rest(animations: &JsonRef) {
     let count = all.len();
     let name = all.next().map_or(String::new(), |first| first.name());
     let moment = match (count, name.is_empty()) {
-        (0 | 1, _) => "its first moment".into(),
-        (_, true) => "the first moment of the first".into(),
-        (_, false) => format!("the first moment of the first,{name}"),
+        (0 | 1, _) => "the first moment of the animation".into(),
+        (_, true) => "the first moment of the first animation".into(),
+        (_, false) => format!("the first moment of the first animation,{name}"),
     };
     let count = count_text(count, "animation", "animations");
-    animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
+    animations.note("animations", format!("the file has {count} and is shown at rest; use `--at 0` to show {moment}"));
 }
 
 /// Interpolates between two quaternions along the shorter arc (slerp).

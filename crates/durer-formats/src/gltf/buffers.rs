@@ -94,7 +94,10 @@ pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
     }
     let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.contains('/'));
     if let Some((scheme, _)) = scheme {
-        at.error("INVALID_URI", format!("the URI has the scheme `{scheme}`: only relative file paths are supported"));
+        at.error(
+            "INVALID_URI",
+            format!("the URI has the scheme `{scheme}`, but only relative file paths are supported"),
+        );
         return None;
     }
     let Some(path) = percent_decoded(uri).filter(|path| !path.is_empty() && !path.contains('\0')) else {
@@ -104,7 +107,7 @@ pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
     if path.starts_with(['/', '\\']) {
         at.error(
             "INVALID_URI",
-            format!("the URI {} is absolute: only relative file paths are supported", quoted(uri.as_bytes())),
+            format!("the URI {} is absolute, but only relative file paths are supported", quoted(uri.as_bytes())),
         );
         return None;
     }
@@ -142,7 +145,8 @@ impl Model<'_> {
                 (Some(bin), 0) => {
                     let there = bin.len();
                     if there < length {
-                        let message = format!("the buffer should have {length} bytes, but the chunk has {there}");
+                        let message =
+                            format!("the buffer should have {length} bytes, but the chunk has only {there} bytes");
                         at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
                         return None;
                     }
@@ -157,7 +161,7 @@ impl Model<'_> {
             },
         };
         if bytes.len() < length {
-            let message = format!("the buffer should have {length} bytes, but has {}", bytes.len());
+            let message = format!("the buffer should have {length} bytes, but has only {} bytes", bytes.len());
             at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
             return None;
         }
@@ -200,13 +204,13 @@ impl Model<'_> {
         };
         let (offset, length) = (offset? as usize, length? as usize);
         if stride.is_some_and(|stride| stride > length) {
-            at.error("BUFFER_VIEW_TOO_BIG_BYTE_STRIDE", "the stride is longer than the view");
+            at.error("BUFFER_VIEW_TOO_BIG_BYTE_STRIDE", "the stride is longer than the buffer view");
         }
         let buffer = self.buffers[buffer?].as_ref()?;
         let end = offset.checked_add(length).filter(|end| *end <= buffer.length);
         if end.is_none() {
             let bytes = buffer.length;
-            let message = format!("{length} bytes from {offset} on do not fit into a buffer of {bytes}");
+            let message = format!("{length} bytes from byte {offset} on do not fit into a buffer of {bytes} bytes");
             at.get("byteLength").unwrap_or(*at).error("BUFFER_VIEW_TOO_LONG", message);
         }
         let slice = match compression(at) {

@@ -3,6 +3,7 @@
 use super::Model;
 use super::json::JsonRef;
 use super::nodes::NodeData;
+use crate::report::range_text;
 use durer_diag::did_you_mean;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
@@ -108,7 +109,7 @@ impl Model<'_> {
                     let suggestion = did_you_mean(wanted, all.iter().map(String::as_str));
                     let known = match (suggestion, all.is_empty()) {
                         (Some(suggestion), _) => format!("did you mean `{suggestion}`?"),
-                        (None, true) => format!("the {} cameras have no names, only numbers from 0", there.len()),
+                        (None, true) => format!("it has {}", range_text(there.len(), "camera", "cameras")),
                         (None, false) => format!("the cameras are `{}`", all.join("`, `")),
                     };
                     self.report.report(

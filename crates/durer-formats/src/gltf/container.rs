@@ -48,7 +48,12 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
     if !bytes.starts_with(MAGIC) {
         let magic = quoted(&bytes[..end.min(4)]);
         let code = if end < 4 { "GLB_UNEXPECTED_END_OF_HEADER" } else { "GLB_INVALID_MAGIC" };
-        report_error(report, 0..end.min(4), code, format!("a GLB file begins with `glTF`, but this one with {magic}"));
+        report_error(
+            report,
+            0..end.min(4),
+            code,
+            format!("a GLB file must begin with `glTF`, but this file begins with {magic}"),
+        );
         return None;
     }
     let (Some(version), Some(length)) = (word(4), word(8)) else {
@@ -65,7 +70,12 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
         return None;
     }
     if length < 20 {
-        report_error(report, 8..12, "GLB_LENGTH_TOO_SMALL", format!("the header declares a length of {length} bytes"));
+        report_error(
+            report,
+            8..12,
+            "GLB_LENGTH_TOO_SMALL",
+            format!("the header declares {length} bytes, which is too short for a GLB file"),
+        );
         return None;
     }
     if length as usize > end {
@@ -73,7 +83,7 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
             report,
             8..12,
             "GLB_LENGTH_MISMATCH",
-            format!("the header declares {length} bytes, but the file has {end}"),
+            format!("the header declares {length} bytes, but the file has only {end} bytes"),
         );
         return None;
     }
@@ -98,7 +108,7 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
             report_error(report, at..at + 4, "GLB_CHUNK_LENGTH_UNALIGNED", message);
         }
         if chunk.end > end {
-            let message = format!("a chunk of {length} bytes does not fit into the file's {end}");
+            let message = format!("a chunk of {length} bytes does not fit into the file of {end} bytes");
             report_error(report, at..at + 4, "GLB_CHUNK_TOO_BIG", message);
             return None;
         }
@@ -112,9 +122,11 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
                 report_error(report, at + 4..at + 8, "GLB_UNEXPECTED_FIRST_CHUNK", "the first chunk must be JSON");
                 return None;
             }
-            (JSON, _) => report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second JSON chunk"),
+            (JSON, _) => {
+                report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a GLB file can have only one JSON chunk")
+            }
             (BIN, _) if bin.is_some() => {
-                report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second binary chunk")
+                report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a GLB file can have only one binary chunk")
             }
             (BIN, _) => bin = Some(chunk.clone()),
             // Ignore all other chunks, which belong to extensions.

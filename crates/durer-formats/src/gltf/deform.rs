@@ -65,7 +65,8 @@ impl Model<'_> {
             return None;
         }
         if accessor.count < joints.len() {
-            let message = format!("{} matrices for {} joints", accessor.count, joints.len());
+            let message =
+                format!("there are only {} inverse bind matrices for {} joints", accessor.count, joints.len());
             matrices.error("INVALID_IBM_ACCESSOR_COUNT", message);
             return None;
         }

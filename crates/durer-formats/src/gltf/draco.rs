@@ -40,7 +40,7 @@ impl Model<'_> {
         let mesh = match decode(packed.bytes(), self.work.left().min(self.kept.left())) {
             Ok(mesh) => mesh,
             Err(message) => {
-                at.error("compressed-data", format!("the Draco data is damaged: {message}"));
+                at.error("compressed-data", format!("the Draco data cannot be decoded ({message})"));
                 return None;
             }
         };
@@ -54,7 +54,7 @@ impl Model<'_> {
             let number = packed.get(key)?;
             let id = number.integer(..=u64::from(u32::MAX))? as u32;
             let Some(attribute) = mesh.attribute_by_unique_id(id) else {
-                number.error("UNRESOLVED_REFERENCE", format!("the compressed bytes have no attribute {id}"));
+                number.error("UNRESOLVED_REFERENCE", format!("the compressed data have no attribute {id}"));
                 continue;
             };
             let Some(component) = component(attribute.data_type()) else {
@@ -82,7 +82,8 @@ impl Model<'_> {
         if (accessor.width, accessor.count) != (width, count) {
             let (own_width, own_count) = (accessor.width, accessor.count);
             let message = format!(
-                "the accessor has {own_count} rows of {own_width}, but the compressed data {count} rows of {width}"
+                "the accessor has {own_count} rows of {own_width} numbers, but the compressed data have {count} rows \
+                 of {width} numbers"
             );
             at.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
             return None;

@@ -182,7 +182,7 @@ impl<'a> JsonRef<'a> {
         let items = match self.value {
             Value::Array(items) => {
                 if items.is_empty() {
-                    self.error("EMPTY_ENTITY", "entity cannot be empty");
+                    self.error("EMPTY_ENTITY", "the array must not be empty");
                 }
                 items.as_slice()
             }
@@ -276,7 +276,7 @@ impl<'a> JsonRef<'a> {
         if number < count as u64 {
             return Some(number as usize);
         }
-        self.error("UNRESOLVED_REFERENCE", format!("unresolved reference: {number}"));
+        self.error("UNRESOLVED_REFERENCE", format!("index {number} refers to an item that does not exist"));
         None
     }
 

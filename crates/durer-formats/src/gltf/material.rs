@@ -22,7 +22,7 @@ const WITHOUT_COUNTERPART: [(&str, &str); 1] = [("KHR_materials_subsurface", "su
 const TEXTURES: [(&str, &str, &str); 3] = [
     ("KHR_materials_volume", "thicknessTexture", "the body's actual thickness is used"),
     ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat uses the normals of its base"),
-    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor is used"),
+    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only the factor is used"),
 ];
 
 /// Alpha mode of a glTF material.
@@ -201,7 +201,7 @@ impl Model<'_> {
         for (name, key, instead) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
             if let Some(texture) = extension.get(key) {
-                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out: {instead}"));
+                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out; {instead}"));
             }
         }
         let number = |at: &JsonRef, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);

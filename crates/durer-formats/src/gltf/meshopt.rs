@@ -57,19 +57,19 @@ impl Model<'_> {
             return None;
         }
         if count * stride != length {
-            let message = format!("{count} elements of {stride} bytes do not fill a view of {length}");
+            let message = format!("{count} elements of {stride} bytes do not fill a buffer view of {length} bytes");
             at.error("BUFFER_VIEW_TOO_LONG", message);
             return None;
         }
         let buffer = self.buffers[buffer].as_ref()?;
         let end = offset.checked_add(size)?;
         let Some(packed) = buffer.slice.as_ref()?.part(offset..end) else {
-            at.error("BUFFER_VIEW_TOO_LONG", format!("{size} bytes from {offset} on do not fit into the buffer"));
+            at.error("BUFFER_VIEW_TOO_LONG", format!("{size} bytes from byte {offset} on do not fit into the buffer"));
             return None;
         };
         // One byte encodes at most four groups of 16 equal bytes, or one triangle.
         if size.saturating_mul(64) < length {
-            at.error("compressed-data", format!("{size} bytes cannot hold {length}"));
+            at.error("compressed-data", format!("{size} compressed bytes are too few for {length} decompressed bytes"));
             return None;
         }
         self.charge(length, 1, at)?;

@@ -263,7 +263,7 @@ fn check_version(root: &JsonRef) -> Option<()> {
         return None;
     };
     if major != 2 {
-        let message = format!("unsupported glTF version {major}.{minor}: only version 2 is supported");
+        let message = format!("glTF version {major}.{minor} is not supported, only version 2");
         version.error("UNKNOWN_ASSET_MAJOR_VERSION", message);
         return None;
     }
@@ -290,9 +290,9 @@ fn required(root: &JsonRef) -> bool {
             if key == "extensionsRequired" && !SUPPORTED_EXTENSIONS.contains(&name.as_str()) {
                 let tool = match name.as_str() {
                     "KHR_meshopt_compression" => {
-                        ": convert the file with `gltf-transform copy`, which removes the compression"
+                        "; convert the file with `gltf-transform copy`, which removes the compression"
                     }
-                    "KHR_texture_basisu" => ": convert its pictures to PNG with `ktx extract`",
+                    "KHR_texture_basisu" => "; convert the file's pictures to PNG with `ktx extract`",
                     _ => "",
                 };
                 at.error("UNSUPPORTED_EXTENSION", format!("the file requires {name}, which is not supported{tool}"));

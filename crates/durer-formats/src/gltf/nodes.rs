@@ -82,7 +82,7 @@ impl Model<'_> {
             let Some(children) = at.get("children") else { continue };
             for (at, child) in children.items().zip(nodes[i].children.clone()) {
                 if nodes.get(child).is_some_and(|node| node.parent.is_some()) {
-                    at.error("NODE_PARENT_OVERRIDE", format!("node {child} has another parent already"));
+                    at.error("NODE_PARENT_OVERRIDE", format!("node {child} already has another parent"));
                 } else if let Some(node) = nodes.get_mut(child) {
                     node.parent = Some(i);
                 }
@@ -98,7 +98,7 @@ impl Model<'_> {
         if let Some(lost) =
             list.items().zip(&reached).find(|(_, reached)| !**reached).filter(|_| !self.report.has_errors())
         {
-            lost.0.error("NODE_LOOP", "this node is its own ancestor, or below one that is");
+            lost.0.error("NODE_LOOP", "this node is its own ancestor, or is below a node that is its own ancestor");
         }
         nodes
     }
@@ -128,11 +128,14 @@ impl Model<'_> {
         let mut local = LocalTransform::default();
         if let Some(matrix) = at.get("matrix") {
             if ["translation", "rotation", "scale"].iter().any(|key| at.get(key).is_some()) {
-                matrix.error("NODE_MATRIX_TRS", "a node has either a matrix or translation, rotation and scale");
+                matrix.error(
+                    "NODE_MATRIX_TRS",
+                    "a node can have either a matrix, or a translation, a rotation and a scale, but not both",
+                );
             }
             if let Some(columns) = matrix.numbers::<16>() {
                 if [columns[3], columns[7], columns[11], columns[15]] != [0.0, 0.0, 0.0, 1.0] {
-                    matrix.error("NODE_MATRIX_NON_TRS", "the matrix is not made of translation, rotation and scale");
+                    matrix.error("NODE_MATRIX_NON_TRS", "the last row of the matrix must be 0 0 0 1");
                 }
                 local.matrix = Some(DAffine3::from_mat4(DMat4::from_cols_array(&columns.map(f64::from))));
             }
@@ -204,7 +207,7 @@ impl Model<'_> {
             scene.list("nodes", |node| {
                 let number = node.index(nodes.len());
                 if number.is_some_and(|number| nodes[number].parent.is_some()) {
-                    node.error("SCENE_NON_ROOT_NODE", "this node is not a root: it has a parent");
+                    node.error("SCENE_NON_ROOT_NODE", "this node is not a root, because it has a parent");
                 }
                 number
             })
@@ -275,7 +278,10 @@ impl Model<'_> {
     /// Warns that a node is left out.
     fn warn_left_out(&self, number: usize, node: &NodeData) {
         let name = if node.name.is_empty() { String::new() } else { format!(" {}", quoted(node.name.as_bytes())) };
-        let message = format!("node{name} is left out: its transform flattens it to a line or point, or overflows");
+        let message = format!(
+            "node{name} is left out, because its transform flattens its mesh to a line or point, or has numbers that \
+             are too large"
+        );
         self.once_at("flat", &format!("/nodes/{number}"), &message);
     }
 

@@ -60,7 +60,10 @@ impl Model<'_> {
             let targets = primitives.items().next().map_or(0, |first| first.list("targets", |_| ()).len());
             let count = weights.items().len();
             if count != targets {
-                weights.error("MESH_INVALID_WEIGHTS_COUNT", format!("{count} weights for {targets} morph targets"));
+                weights.error(
+                    "MESH_INVALID_WEIGHTS_COUNT",
+                    format!("the mesh has {targets} morph targets, but {count} weights"),
+                );
             }
         }
         let counts: Vec<usize> = primitives.items().map(|primitive| primitive.list("targets", |_| ()).len()).collect();
@@ -89,7 +92,10 @@ impl Model<'_> {
         if right && widths.contains(&accessor.width) && !accessor.is_matrix {
             return Some(accessor);
         }
-        let message = format!("invalid accessor format for {name}: {:?} of {}", accessor.component, accessor.width);
+        let message = format!(
+            "an accessor for {name} cannot have component type {:?} with {} components",
+            accessor.component, accessor.width
+        );
         at.error("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", message);
         None
     }
@@ -100,10 +106,10 @@ impl Model<'_> {
         let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.integer(0..=6))?;
         let attributes = at.required("attributes")?;
         if attributes.object()?.is_empty() {
-            attributes.error("EMPTY_ENTITY", "entity cannot be empty");
+            attributes.error("EMPTY_ENTITY", "`attributes` must not be empty");
         }
         let Some(positions) = attributes.get("POSITION") else {
-            attributes.warning("MESH_PRIMITIVE_NO_POSITION", "no POSITION attribute: the primitive is left out");
+            attributes.warning("MESH_PRIMITIVE_NO_POSITION", "a primitive without a POSITION attribute is left out");
             return None;
         };
         let place = self.attribute(&positions, "POSITION", &[3], &[])?;
@@ -171,7 +177,8 @@ impl Model<'_> {
         at: &JsonRef,
     ) -> Option<Primitive> {
         let name = at.name();
-        let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
+        let message =
+            format!("points and lines of mesh{name} have no surface, so small balls and thin sticks are shown");
         self.once_at("points-and-lines", &at.pointer(), &message);
         // About a dozen vertices are needed for each point or line.
         self.charge(order.len(), 12 * 64, at)?;
@@ -221,7 +228,8 @@ impl Model<'_> {
                 let set = key.rsplit_once('_').filter(|(_, set)| set.parse::<u32>().is_ok());
                 match set.map(|(word, _)| word) {
                     Some("TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS") => {
-                        let message = format!("additional attribute sets, here of mesh{}, are left out", at.name());
+                        let message =
+                            format!("additional attribute sets, for example of mesh{}, are left out", at.name());
                         self.once_at("further-attributes", &at.pointer(), &message);
                     }
                     _ => at.error("MESH_PRIMITIVE_INVALID_ATTRIBUTE", format!("invalid attribute name `{key}`")),
@@ -244,7 +252,7 @@ impl Model<'_> {
             return None;
         }
         if accessor.strided {
-            let message = "the view of indices must not have a stride";
+            let message = "the buffer view of indices must not have a stride";
             indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE", message);
         }
         self.charge(accessor.count, 4, &indices)?;
@@ -259,7 +267,10 @@ impl Model<'_> {
         }
         if greatest as usize >= count {
             let wrong = order.iter().find(|&&i| i as usize >= count).unwrap_or(&greatest);
-            indices.error("ACCESSOR_INDEX_OOB", format!("index {wrong} is out of range: there are {count} vertices"));
+            indices.error(
+                "ACCESSOR_INDEX_OOB",
+                format!("index {wrong} is out of range, because there are only {count} vertices"),
+            );
             return None;
         }
         Some(order)

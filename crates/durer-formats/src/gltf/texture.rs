@@ -16,7 +16,7 @@ fn wrap(at: &JsonRef) -> Option<Wrap> {
         33648 => Some(Wrap::Mirror),
         33071 => Some(Wrap::Clamp),
         other => {
-            at.error("VALUE_NOT_IN_LIST", format!("invalid value {other}: not a wrapping mode"));
+            at.error("VALUE_NOT_IN_LIST", format!("value {other} is not a wrapping mode"));
             None
         }
     }
@@ -53,7 +53,10 @@ impl Model<'_> {
                 }
                 let picture = self.views[view.index(self.views.len())?].clone()?;
                 if picture.stride.is_some() {
-                    view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
+                    view.error(
+                        "IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE",
+                        "the buffer view of an image must not have a stride",
+                    );
                 }
                 self.charge(picture.length, 1, at)?;
                 PictureBytes::Memory(name, picture.slice?.bytes().into())
@@ -81,7 +84,8 @@ impl Model<'_> {
         if set > 1 {
             let name = at.name();
             let message = format!(
-                "this texture of material{name} uses TEXCOORD_{set}, but only two sets are supported: TEXCOORD_0 is used"
+                "this texture of material{name} uses TEXCOORD_{set}, but only two sets are supported; \
+                 TEXCOORD_0 is used"
             );
             at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
@@ -115,7 +119,8 @@ impl Model<'_> {
                     Some(name) => at.error(
                         "UNSUPPORTED_EXTENSION",
                         format!(
-                            "its picture has an unsupported compression ({name}): convert it with `gltf-transform`"
+                            "the texture's picture has an unsupported compression ({name}); convert the file with \
+                             `gltf-transform`"
                         ),
                     ),
                     None => at.warning("TEXTURE_NO_SOURCE", "a texture without a picture is left out"),

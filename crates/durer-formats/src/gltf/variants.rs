@@ -19,7 +19,7 @@ impl Model<'_> {
         let known = format!("`{}`", names.join("`, `"));
         let Some(wanted) = &self.input.scene_defaults.variant else {
             if !names.is_empty() {
-                let message = format!("the model has the variants {known}: `--variant NAME` selects one");
+                let message = format!("the model has the variants {known}; select one with `--variant NAME`");
                 variants.as_ref().unwrap_or(root).note("variants", message);
             }
             return None;
@@ -29,7 +29,7 @@ impl Model<'_> {
         if index.is_none() {
             let help = match did_you_mean(wanted, names.iter().copied()) {
                 Some(suggestion) => format!("did you mean `{suggestion}`?"),
-                None if names.is_empty() => "it has none".into(),
+                None if names.is_empty() => "no variants are defined".into(),
                 None => format!("the variants are {known}"),
             };
             root.error("no-variant", format!("the file has no variant `{wanted}`: {help}"));

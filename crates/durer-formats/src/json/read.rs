@@ -4,7 +4,7 @@ use super::tree::{Member, Node, Value, parse};
 use super::values::{Members, Reader};
 use super::{MAX_DEPTH, schema};
 use crate::course::{flat_matrix_error, invalid_matrix_error};
-use crate::report::{Report, count_text, quoted};
+use crate::report::{Report, quoted, range_text};
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::Camera;
@@ -30,7 +30,7 @@ impl<'a> Document<'a> {
         let mut report = Report::new(file, diagnostics);
         let root = match text.len() < u32::MAX as usize {
             true => parse(text).map_err(|error| {
-                let first = error.first.map(|first| (report.span(first), "first here".to_string()));
+                let first = error.first.map(|first| (report.span(first), "the first one is here".to_string()));
                 let diagnostic = report.error(error.at, error.message);
                 (diagnostic.code, diagnostic.related) = ("syntax", first);
             }),
@@ -115,7 +115,7 @@ impl Reader<'_> {
     fn check_materials(&mut self, count: usize) {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
-                let has = count_text(count, "material", "materials");
+                let has = range_text(count, "material", "materials");
                 let diagnostic =
                     self.report.warning(at, format!("material {index} does not exist: the scene has {has}"));
                 diagnostic.code = "material-index";
@@ -132,7 +132,7 @@ impl Reader<'_> {
                 members.take("transform").map(|node| self.matrices(node, "transform", invalid_matrix_error));
             self.fields(&mut solid, &mut members);
             if let Some(index) = solid.materials().into_iter().find(|index| *index >= own) {
-                let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
+                let message = format!("material {own} may use only earlier materials, not material {index}");
                 self.error(node.head(), "bad-value", message, None);
             }
             Material::Solid(solid, transform.unwrap_or_default())
@@ -141,7 +141,7 @@ impl Reader<'_> {
             let preset = name.and_then(|(_, name)| presets::preset(name));
             if let (Some((node, name)), None) = (name, &preset) {
                 let help = suggest(name, presets::PRESETS.iter().map(|row| row.0));
-                let help = help.unwrap_or("`durer words preset` lists them".into());
+                let help = help.unwrap_or("run `durer words preset` to list the presets".into());
                 let message = format!("unknown preset {}", quoted(name.as_bytes()));
                 self.error(node.at.clone(), "unknown-word", message, Some(help));
             }
@@ -174,13 +174,13 @@ impl Reader<'_> {
         };
         let words = MatrixOp::words();
         let [Member { name, at, node: value }] = members.as_slice() else {
-            let help = Some(format!("one of {}", words.join(", ")));
-            self.error(node.head(), "bad-value", "a matrix is an object of one member", help);
+            let help = Some(format!("known matrices are {}", words.join(", ")));
+            self.error(node.head(), "bad-value", "a matrix must be an object with exactly one member", help);
             return None;
         };
         let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
-            let help = suggest(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
-            self.error(at.clone(), "unknown-word", format!("{} is not a matrix", quoted(name.as_bytes())), Some(help));
+            let help = suggest(name, words).unwrap_or_else(|| format!("known matrices are {}", words.join(", ")));
+            self.error(at.clone(), "unknown-word", format!("unknown matrix {}", quoted(name.as_bytes())), Some(help));
             return None;
         };
         let op = match like {

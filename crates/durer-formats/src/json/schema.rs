@@ -67,7 +67,7 @@ pub fn schema() -> Value {
         "title": "Dürer scene",
         "description": format!(
             "The content of the scene language as JSON. Written by `cargo xtask manual`. Beyond this schema, patterns use \
-             earlier materials only, and objects are nested at most {MAX_DEPTH} deep."
+             earlier materials only, and objects are nested at most {MAX_DEPTH} levels deep."
         ),
         "type": "object",
         "properties": members,

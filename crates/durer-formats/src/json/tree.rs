@@ -242,12 +242,13 @@ impl Parser<'_> {
                     let escape = self.at;
                     let Some(char) = self.escaped() else {
                         let end = self.at.clamp(escape + 1, self.text.len());
-                        return self.error(escape..end, "this is not a JSON escape");
+                        return self.error(escape..end, "the escape sequence is not valid in JSON");
                     };
                     bytes.extend(char.encode_utf8(&mut [0; 4]).bytes());
                 }
                 Some(byte @ ..0x20) => {
-                    let message = format!("a string cannot contain character code {byte}: write \\u{byte:04x}");
+                    let message =
+                        format!("a string cannot contain the character with code {byte}: write \\u{byte:04x}");
                     return self.error(self.at..self.at + 1, message);
                 }
                 Some(byte) => {

@@ -83,7 +83,7 @@ impl Reader<'_> {
         let Members { name, all, taken, known, .. } = members;
         for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
             // A list of seventy names would not help the user.
-            let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
+            let few = || (known.len() <= 24).then(|| format!("`{name}` has the members {}", known.join(", ")));
             let help = suggest(&member.name, known.iter().copied()).or_else(few);
             let message = format!("`{name}` has no member {}", quoted(member.name.as_bytes()));
             self.error(member.at.clone(), "unknown-word", message, help);
@@ -118,8 +118,8 @@ impl Reader<'_> {
         let text = self.string(node, name)?;
         let word = words.iter().copied().find(|word| *word == text);
         if word.is_none() {
-            let help =
-                suggest(text, words.iter().copied()).unwrap_or_else(|| format!("it is one of {}", words.join(", ")));
+            let help = suggest(text, words.iter().copied())
+                .unwrap_or_else(|| format!("`{name}` must be one of {}", words.join(", ")));
             let message = format!("`{name}` cannot be {}", quoted(text.as_bytes()));
             self.error(node.at.clone(), "bad-value", message, Some(help));
         }
@@ -148,7 +148,7 @@ impl Reader<'_> {
             Value::Array(items) if items.len() == N => items,
             Value::Array(items) => {
                 let has = count_text(items.len(), "value", "values");
-                let message = format!("`{name}` needs a list of {N} numbers, but this one has {has}");
+                let message = format!("`{name}` needs a list of {N} numbers, but this list has {has}");
                 self.error(node.head(), "bad-value", message, None);
                 return None;
             }
@@ -222,7 +222,7 @@ impl Reader<'_> {
         for row in self.items(node, name) {
             let items = self.items(row, name);
             if items.len() != width {
-                let message = format!("each row of `{name}` is a list of {width} numbers");
+                let message = format!("each row of `{name}` must be a list of {width} numbers");
                 self.error(row.head(), "bad-value", message, None);
                 return None;
             }

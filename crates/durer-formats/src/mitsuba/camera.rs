@@ -5,6 +5,7 @@
 
 use super::plugin::Plugin;
 use super::state::Reader;
+use crate::report::range_text;
 use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::MAX_PIXELS;
@@ -64,8 +65,8 @@ impl Reader<'_> {
         let sensor = by_id.or_else(|| sensors.get(wanted.parse::<usize>().ok()?).cloned());
         if sensor.is_none() {
             let known = ids.iter().filter(|(_, plugin)| plugin.element == "sensor").map(|(id, _)| id.as_str());
-            let count = sensors.len();
-            let message = format!("unknown sensor `{wanted}`: the file has {count}, numbered from 0");
+            let has = range_text(sensors.len(), "sensor", "sensors");
+            let message = format!("unknown sensor `{wanted}`: the file has {has}");
             let help = suggest(wanted, known);
             self.report.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
         }
@@ -180,7 +181,7 @@ impl Reader<'_> {
             axis = text;
         }
         match (sensor.text(report, "focal_length"), sensor.get("fov")) {
-            (Some(_), Some(fov)) => report.error(fov.at, "a camera takes either `fov` or `focal_length`"),
+            (Some(_), Some(fov)) => report.error(fov.at, "a camera takes either `fov` or `focal_length`, but not both"),
             (text, None) => {
                 let text = text.unwrap_or("50mm".into());
                 let length = text.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
@@ -254,8 +255,10 @@ impl Reader<'_> {
             None => {}
         }
         if plugin.boolean(report, "hide_emitters") == Some(true) {
-            report
-                .unsupported_once(plugin.span("hide_emitters"), "hidden lights have no counterpart: they are visible");
+            report.unsupported_once(
+                plugin.span("hide_emitters"),
+                "hidden lights have no counterpart: all lights are visible",
+            );
         }
         plugin.mark_known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
         plugin.warn_unused(report);

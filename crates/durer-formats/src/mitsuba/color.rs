@@ -87,7 +87,8 @@ impl Reader<'_> {
             values.iter().enumerate().map(|(i, value)| Some([at(i)? as f32, *value as f32])).collect();
         let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
         if curve.is_none() {
-            let message = format!("a `{}` spectrum needs increasing wavelengths and one value for each", plugin.kind);
+            let message =
+                format!("a `{}` spectrum needs increasing wavelengths and one value for each wavelength", plugin.kind);
             report.error(plugin.at, message);
         }
         curve

@@ -90,7 +90,10 @@ fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, ParseError> {
         };
         if pieces.is_empty() && !points.is_empty() {
             let least = if is_spline { 4 } else { 2 };
-            return Err((place, format!("a curve that ends here has {} points: it needs {least}", points.len())));
+            return Err((
+                place,
+                format!("the curve that ends here has {} points, but needs at least {least} points", points.len()),
+            ));
         }
         curves.push(pieces);
         points.clear();

@@ -68,7 +68,7 @@ impl Reader<'_> {
                 let direction = plugin.vector(report, "direction");
                 let direction = direction.map_or(along(DVec3::Z), |d| d.normalize_or_zero().as_vec3());
                 if direction == Vec3::ZERO {
-                    report.error(plugin.span("direction"), "a direction must have a length");
+                    report.error(plugin.span("direction"), "a direction must not be 0 0 0");
                 }
                 let color = self.light_color(plugin, "irradiance") / PI;
                 DirectionalLight { direction, color, ..DirectionalLight::default() }.into()
@@ -156,7 +156,7 @@ impl Reader<'_> {
         let report = self.report;
         let image = self.named_plugin(plugin, "irradiance").and_then(|texture| self.projected_picture(&texture));
         let Some(image) = image else {
-            return report.unsupported_once(plugin.at, "this projector is ignored: it has no picture");
+            return report.unsupported_once(plugin.at, "a projector without a picture is ignored");
         };
         let size = DVec2::new(f64::from(image.width), f64::from(image.height));
         let half = self.half_view(plugin, size).as_vec2();
@@ -181,7 +181,7 @@ impl Reader<'_> {
         if texture.kind != "bitmap" {
             self.report.unsupported_once(
                 texture.at,
-                "projecting other textures than `bitmap` has no counterpart: the texture is ignored",
+                "a projected texture other than `bitmap` has no counterpart: the texture is ignored",
             );
             return None;
         }
@@ -197,7 +197,7 @@ impl Reader<'_> {
     pub(super) fn set_infinite_light(&mut self, light: InfiniteLight) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
-            return self.report.push(error.at(light.at()).related(first.at(), "the first is here"));
+            return self.report.push(error.at(light.at()).related(first.at(), "the first one is here"));
         }
         self.infinite = Some(light);
     }

@@ -156,7 +156,7 @@ impl<'a> Loader<'a> {
             Ok(Event::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.report.is_full() => Ok(Some(tag)),
             Ok(Event::Open(tag)) => {
                 if !self.report.is_full() {
-                    self.report.error(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
+                    self.report.error(tag.at, format!("the scene has more than {MAX_ELEMENTS} elements"));
                 }
                 Err(ErrorReported)
             }
@@ -258,7 +258,7 @@ impl<'a> Loader<'a> {
     fn register(&mut self, id: String, at: Span, plugin: Rc<Plugin>) {
         if let Some(other) = self.plugins.get(&id) {
             let error = Diagnostic::error(format!("the id `{id}` is given twice")).code("bad-value").at(at);
-            return self.report.push(error.related(other.at, "the first is here"));
+            return self.report.push(error.related(other.at, "the first one is here"));
         }
         self.plugins.insert(id, plugin);
     }
@@ -280,7 +280,7 @@ impl<'a> Loader<'a> {
     fn add_property(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
-            return self.report.push(error.related(other.at, "the first is here"));
+            return self.report.push(error.related(other.at, "the first one is here"));
         }
         parent.properties.push(Property { name, value, at, used: Cell::default() });
     }
@@ -302,7 +302,7 @@ impl<'a> Loader<'a> {
         } else if self.open_files.len() > MAX_INCLUDE_DEPTH {
             Some(format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"))
         } else if self.files > MAX_FILES {
-            Some(format!("too many files: more than {MAX_FILES} are included"))
+            Some(format!("more than {MAX_FILES} files are included"))
         } else {
             None
         };
@@ -366,7 +366,8 @@ impl<'a> Loader<'a> {
             match variable {
                 Some((name, value)) => {
                     if text.len() + value.len() > MAX_VALUE {
-                        let message = format!("with its variables replaced, this is longer than {MAX_VALUE} bytes");
+                        let message =
+                            format!("this value is longer than {MAX_VALUE} bytes after its variables are replaced");
                         self.report.error(attribute.at, message);
                         return None;
                     }

@@ -75,8 +75,7 @@ impl Reader<'_> {
     fn has_room_for(&self, material: &MaterialDef, at: Span) -> bool {
         let count = material.count(MAX_PARTS);
         if count > MAX_PARTS {
-            self.report
-                .error(at, format!("this material is too large: it consists of more than {MAX_PARTS} materials"));
+            self.report.error(at, format!("this material consists of more than {MAX_PARTS} materials"));
         }
         count <= MAX_PARTS
             && self.loader.limits.count_bytes_or_report(count, size_of::<PrincipledMaterial>(), self.report, at)
@@ -225,7 +224,7 @@ impl Reader<'_> {
                 let help = suggest(text, metals::dielectric_names());
                 self.report.error_with_help(
                     property.at,
-                    format!("unknown material `{text}`: it has no index of refraction"),
+                    format!("the material `{text}` has no known index of refraction"),
                     help,
                 );
                 default
@@ -303,7 +302,8 @@ impl Reader<'_> {
         let name = plugin.text(self.report, "material").unwrap_or("none".into());
         let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
         if by_numbers && plugin.get("material").is_some() {
-            self.report.error(plugin.span("material"), "a conductor takes either `material`, or `eta` and `k`");
+            self.report
+                .error(plugin.span("material"), "a conductor takes either `material`, or `eta` and `k`, but not both");
         }
         let [f0, f82] = if !by_numbers && name == "none" {
             [Vec3::ONE; 2]
@@ -360,7 +360,7 @@ impl Reader<'_> {
             if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
                 self.report.unsupported_once(
                     plugin.span("specular_reflectance"),
-                    "a coloured reflection of a coat has no counterpart: white is used",
+                    "a coloured reflection of a coat has no counterpart: a white reflection is used",
                 );
             }
         } else {
@@ -436,7 +436,7 @@ impl Reader<'_> {
                     (Some(only), None) | (None, Some(only)) => {
                         self.report.unsupported_once(
                             at,
-                            "a blend with a `null` material has no counterpart: only the other is used",
+                            "a blend with a `null` material has no counterpart: only the other material is used",
                         );
                         return Some(only);
                     }

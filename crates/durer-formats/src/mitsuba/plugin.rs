@@ -182,7 +182,9 @@ impl Plugin {
                 continue;
             }
             let message = match (nested, property.name.as_str()) {
-                (true, "") => format!("the {} `{}` does not use this: it is ignored", self.element, self.kind),
+                (true, "") => {
+                    format!("this nested plugin is ignored: the {} `{}` does not use it", self.element, self.kind)
+                }
                 (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.element, self.kind),
             };
             let help = suggest(&property.name, known_names.iter().copied());

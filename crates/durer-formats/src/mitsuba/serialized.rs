@@ -9,6 +9,7 @@
 
 use crate::files::read_named;
 use crate::model::ReadInput;
+use crate::report::range_text;
 use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
@@ -74,12 +75,11 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let row = lists.iter().filter(|(there, _)| *there).map(|(_, width)| size * width).sum::<u64>();
     // Indices have 64 bits only if the mesh has more vertices than this.
     if vertices > u64::from(u32::MAX) {
-        return Err((unpacked.position(), format!("{vertices} vertices are more than 32-bit indices allow")));
+        return Err((unpacked.position(), format!("32-bit indices do not allow {vertices} vertices")));
     }
     let wanted = triangles.saturating_mul(12).saturating_add(vertices * row);
     if wanted > budget {
-        let message =
-            format!("{vertices} vertices and {triangles} triangles are more than a file of this size can contain");
+        let message = format!("a file of this size cannot contain {vertices} vertices and {triangles} triangles");
         return Err((unpacked.position(), message));
     }
     let mut list = |what: &str, there: bool, width: u64| match there {
@@ -91,10 +91,11 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let uvs = list("texture coordinates", has(UVS), 2)?;
     // Mitsuba 3 ignores these vertex colours.
     list("colours", has(COLORS), 3)?;
-    let corners = unpacked.bytes("corners", triangles * 12)?;
+    let corners = unpacked.bytes("vertex indices", triangles * 12)?;
     let corners: Vec<u32> = corners.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
     if let Some(i) = corners.iter().position(|corner| u64::from(*corner) >= vertices) {
-        let message = format!("triangle {} uses vertex {}, but there are only {vertices}", i / 3, corners[i]);
+        let has = range_text(vertices as usize, "vertex", "vertices");
+        let message = format!("triangle {} uses vertex {}, but the mesh has {has}", i / 3, corners[i]);
         return Err((unpacked.position(), message));
     }
     let triangles = corners.as_chunks().0.to_vec();
@@ -121,7 +122,7 @@ fn find_mesh(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     };
     let version = begins(0)?;
     if !matches!(version, 3 | 4) {
-        return Err((2, format!("version {version} of `.serialized` files is not supported: use 3 or 4")));
+        return Err((2, format!("version {version} of `.serialized` files is not supported, only versions 3 and 4")));
     }
     if number == 0 {
         return Ok((0, version));
@@ -130,7 +131,7 @@ fn find_mesh(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     let last = |at: usize| bytes.get(at..).and_then(|rest| rest.first_chunk());
     let count = last(count_at).map_or(0, |four| u32::from_le_bytes(*four));
     if number >= count {
-        let message = format!("the file has no mesh {number}: it has {count}, numbered from 0");
+        let message = format!("the file has no mesh {number}: it has {}", range_text(count as usize, "mesh", "meshes"));
         return Err((count_at, message));
     }
     let size = if version == 4 { 8 } else { 4 };
@@ -267,9 +268,9 @@ pub(super) mod tests {
         };
         assert_eq!(refused(b"ply\n", 0, MEMORY, "expected a Mitsuba mesh"), 0);
         assert_eq!(refused(b"\x1c\x04\x05\x00", 0, MEMORY, "version 5 of `.serialized` files is not supported"), 2);
-        assert_eq!(refused(&good, 2, MEMORY, "the file has no mesh 2: it has 2"), good.len() - 4);
+        assert_eq!(refused(&good, 2, MEMORY, "the file has no mesh 2: it has only the meshes 0 to 1"), good.len() - 4);
         refused(b"\x1c\x04\x04\x00\x09\x00\x00\x00", 5, MEMORY, "too short for the offsets of 9");
-        refused(&good, 1, 100, "more than a file of this size can contain");
+        refused(&good, 1, 100, "a file of this size cannot contain");
         // Tests with counts that are too large, indices out of range, and numbers that are not
         // finite.
         let changed = |at: usize, byte: u8, message: &str| {
@@ -277,11 +278,11 @@ pub(super) mod tests {
             inner[at] = byte;
             refused(&file(3, &[inner]), 0, u64::MAX, message);
         };
-        changed(8, 1, "4294967300 vertices are more than 32-bit indices allow");
-        changed(19, 1, "more than a file of this size can contain");
-        changed(7, 128, "more than a file of this size can contain");
-        changed(4, 5, "the mesh ends within its corners");
-        changed(68, 9, "triangle 0 uses vertex 9, but there are only 4");
+        changed(8, 1, "32-bit indices do not allow 4294967300 vertices");
+        changed(19, 1, "a file of this size cannot contain");
+        changed(7, 128, "a file of this size cannot contain");
+        changed(4, 5, "the mesh ends within its vertex indices");
+        changed(68, 9, "triangle 0 uses vertex 9, but the mesh has only the vertices 0 to 3");
         let mut inner = stream(3, 0x1000);
         inner[24..28].copy_from_slice(&f32::NAN.to_le_bytes());
         refused(&file(3, &[inner]), 0, MEMORY, "number 1 of the positions must be finite");

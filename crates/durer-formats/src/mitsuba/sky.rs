@@ -74,11 +74,11 @@ impl Reader<'_> {
             "sampling_weight",
             "complex_sun",
         ]);
-        plugin.warn_unsupported(report, &["albedo"], "the ground's albedo is 0.2");
+        plugin.warn_unsupported(report, &["albedo"], "a ground albedo of 0.2 is used");
         plugin.warn_unused(report);
         report.unsupported_once(
             plugin.at,
-            "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance",
+            "the sky of Hosek and Wilkie has no counterpart: Preetham's sky with the same illuminance is used",
         );
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
             return report.unsupported_once(plugin.at, "the sun is below the horizon: this light is left out");

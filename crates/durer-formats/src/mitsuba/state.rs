@@ -161,8 +161,10 @@ impl<'a> Reader<'a> {
     /// for example because they refer to each other in a cycle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > MAX_DEPTH {
-            self.report
-                .error(at, format!("plugins are nested more than {MAX_DEPTH} levels deep: does one refer to itself?"));
+            self.report.error(
+                at,
+                format!("plugins are nested more than {MAX_DEPTH} levels deep, or a plugin refers to itself"),
+            );
         }
         depth > MAX_DEPTH
     }

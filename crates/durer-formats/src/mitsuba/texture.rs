@@ -225,7 +225,10 @@ impl Reader<'_> {
             let field = self.texture(texture, name, Vec3::splat(default));
             if matches!(field, Texture::Picture(..)) {
                 let at: Span = texture.span(name);
-                self.report.unsupported_once(at, "a picture in a field has no counterpart: the default colour is used");
+                self.report.unsupported_once(
+                    at,
+                    "a picture in a field of a `checkerboard` has no counterpart: the default colour is used",
+                );
             }
             match field {
                 Texture::Constant(color) => color,

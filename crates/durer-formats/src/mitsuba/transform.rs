@@ -18,7 +18,7 @@ impl Loader<'_> {
             transform = step * transform;
             let finite = |transform: &DAffine3| transform.to_cols_array().iter().all(|x| (*x as f32).is_finite());
             if !finite(&transform) || transform.matrix3.determinant() == 0.0 || !finite(&transform.inverse()) {
-                self.error(tag.at, "this makes the transform not invertible", None);
+                self.error(tag.at, "this step gives the transform no inverse", None);
                 transform = DAffine3::IDENTITY;
             }
         }
@@ -78,7 +78,10 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             if loader.is_old || (axis.length() - 1.0).abs() < 1e-4 {
                 return Some(turned);
             }
-            loader.warn(tag.at, "the axis of this rotation is not of length 1: it also scales, as in Mitsuba 3");
+            loader.warn(
+                tag.at,
+                "the axis of this rotation does not have length 1, so the rotation also scales, as in Mitsuba 3",
+            );
             Some(DAffine3::from_mat3(stretched(axis, angle)))
         }
         "matrix" => {
@@ -93,7 +96,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
                     Some(DAffine3::from_mat4(DMat4::from_cols_slice(all).transpose()))
                 }
                 _ => {
-                    loader.error(attribute.1, "a matrix needs 16 numbers, or 9", None);
+                    loader.error(attribute.1, "a matrix needs 16 or 9 numbers", None);
                     None
                 }
             }
@@ -109,7 +112,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let (Some(forward), Some(left)) = (forward, left) else {
                 loader.error(
                     tag.at,
-                    "the direction from `origin` to `target` must have a length and not be along `up`",
+                    "`origin` and `target` must differ, and `up` must not be parallel to the viewing direction",
                     None,
                 );
                 return None;
@@ -118,7 +121,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             Some(DAffine3 { matrix3: axes, translation: origin })
         }
         other => {
-            loader.error(tag.at, format!("a transform has no `<{other}>`"), suggest(other, TRANSFORMS));
+            loader.error(tag.at, format!("a transform cannot contain `<{other}>`"), suggest(other, TRANSFORMS));
             None
         }
     }

@@ -71,7 +71,10 @@ pub(super) fn read_faces(
     }
     if let Some((first, count)) = degenerate {
         let verb = if count == 1 { "uses" } else { "use" };
-        report.note(first, format!("{} {verb} a vertex twice; the first is here", count_text(count, "face", "faces")));
+        report.note(
+            first,
+            format!("{} {verb} a vertex twice; the first such face is here", count_text(count, "face", "faces")),
+        );
     }
 }
 
@@ -150,8 +153,9 @@ impl FaceReader<'_> {
             }
         }
         if count < 3 {
-            let message = format!("a face needs at least 3 corners, found {count}");
-            self.faces.report.error(place, message).help = (count == 2).then(|| "a line is an `l` statement".into());
+            let message = format!("a face needs at least 3 vertices, found {count}");
+            self.faces.report.error(place, message).help =
+                (count == 2).then(|| "write a line as an `l` statement".into());
         } else if all_good {
             self.note_degenerate(&place);
             self.cut(place);
@@ -175,9 +179,10 @@ impl FaceReader<'_> {
             }
             start = end + 1;
         }
-        let message = format!("a corner has at most 3 indices, found {}", quoted(&self.bytes[word.clone()]));
+        let message =
+            format!("a vertex reference can have at most 3 indices, found {}", quoted(&self.bytes[word.clone()]));
         self.faces.report.error(word, message).help =
-            Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
+            Some("write `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
         None
     }
 
@@ -206,7 +211,7 @@ impl FaceReader<'_> {
             self.faces
                 .report
                 .error(place, format!("this face is too complex to triangulate ({} vertices)", corners.len()))
-                .help = Some("triangulate it in a modelling program".into());
+                .help = Some("triangulate the face in a modelling program".into());
         }
     }
 }
@@ -235,13 +240,16 @@ pub(super) fn index(
         return Some((so_far as i64 + index) as u32);
     }
     if index == 0 {
-        report.error(at, format!("{one} 0 does not exist: indices count from 1"));
+        report.error(at, format!("{one} 0 does not exist: the first index is 1"));
     } else if index > 0 {
         let message = format!("{one} {} does not exist: the file has {}", quoted(text), count_text(total, one, many));
         report.error(at, message).help = (total == 0).then(|| format!("add `{keyword}` statements for {many}"));
     } else {
         let before = count_text(so_far, one, many);
-        report.error(at, format!("{} reaches back too far: {before} so far", quoted(text)));
+        report.error(
+            at,
+            format!("index {} reaches back too far: the file has {before} before this statement", quoted(text)),
+        );
     }
     None
 }

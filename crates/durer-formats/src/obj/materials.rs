@@ -52,7 +52,7 @@ pub(super) fn read_files(
         let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));
         let Some((bytes, path)) = bytes else {
             let message =
-                format!("material file {} not found: its materials are shown in grey", quoted(name.as_bytes()));
+                format!("the material file {} was not found: its materials are shown in grey", quoted(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             continue;
         };
@@ -137,7 +137,7 @@ impl Reader<'_, '_> {
         current.into_iter().for_each(|finished| self.finish(finished));
         if let Some(first) = self.ignored_keywords.values().copied().min_by_key(|span| span.start) {
             let all: Vec<&str> = self.ignored_keywords.keys().map(String::as_str).collect();
-            let message = format!("statements without a counterpart are left out: {}", all.join(", "));
+            let message = format!("some statements have no counterpart and are left out: {}", all.join(", "));
             diagnostics.push(Diagnostic::note(message).code(NO_COUNTERPART).at(first));
         }
     }
@@ -288,7 +288,8 @@ impl Reader<'_, '_> {
         let name = unquoted(&name).to_string();
         let word = &keyword.text;
         let Some(file) = find_file(self.input, &name, span) else {
-            let message = format!("material `{}`: picture {} not found ({word})", m.name, quoted(name.as_bytes()));
+            let message =
+                format!("material `{}`: the picture {} of `{word}` was not found", m.name, quoted(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             return None;
         };

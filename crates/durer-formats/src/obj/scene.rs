@@ -95,7 +95,10 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);
             let suggestion = did_you_mean(&name, known).map(|suggestion| format!("did you mean `{suggestion}`?"));
-            let message = format!("no material file has {}: a neutral material is used", quoted(name.as_bytes()));
+            let message = format!(
+                "no material file defines the material {}: a neutral material is used",
+                quoted(name.as_bytes())
+            );
             diagnostics.push(Diagnostic {
                 help: suggestion,
                 ..Diagnostic::warning(message).code("no-material").at(span(&at))

@@ -44,7 +44,7 @@ fn line_ends_continuations_and_comments() {
         let (mesh, findings) = read(text.as_bytes(), "m.obj");
         match findings.is_empty() {
             true => assert_eq!(mesh.unwrap(), plain, "{text}"),
-            false => assert_eq!(findings, ["5:1+2 Error: a face needs at least 3 corners, found 0"]),
+            false => assert_eq!(findings, ["5:1+2 Error: a face needs at least 3 vertices, found 0"]),
         }
     }
 }
@@ -79,10 +79,7 @@ fn wrong_numbers() {
         ("vt # 1", "5:1+2 Error: `vt` needs 1 number, found 0".into()),
         ("v 1 x2 3", "5:5+2 Error: expected a number, found `x2`".into()),
         ("v 1 2 3 v", "5:9+1 Error: expected a number, found `v`".into()),
-        (
-            "\n v\t1 2,5 3",
-            "6:6+3 Error: expected a number, found `2,5` (decimals are written with a point: `2.5`)".into(),
-        ),
+        ("\n v\t1 2,5 3", "6:6+3 Error: expected a number, found `2,5` (write decimals with a point: `2.5`)".into()),
         ("v 1 2 nan", format!("5:7+3 Error: expected a finite number, found `nan` {limit}")),
         ("vt 1e39 0", format!("5:4+4 Error: expected a finite number, found `1e39` {limit}")),
         ("vn 0 0 -1.#IND", format!("5:8+7 Error: expected a finite number, found `-1.#IND` {limit}")),
@@ -97,14 +94,20 @@ fn wrong_numbers() {
 
 #[test]
 fn wrong_faces() {
-    let form = "(a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`)";
+    let form = "(write `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`)";
     let none = "(add `vt` statements for texture coordinates)";
     let cases = [
-        ("f 1 2", "5:1+5 Error: a face needs at least 3 corners, found 2 (a line is an `l` statement)".to_string()),
-        ("f", "5:1+1 Error: a face needs at least 3 corners, found 0".into()),
-        ("f 1 0 3", "5:5+1 Error: vertex 0 does not exist: indices count from 1".into()),
+        (
+            "f 1 2",
+            "5:1+5 Error: a face needs at least 3 vertices, found 2 (write a line as an `l` statement)".to_string(),
+        ),
+        ("f", "5:1+1 Error: a face needs at least 3 vertices, found 0".into()),
+        ("f 1 0 3", "5:5+1 Error: vertex 0 does not exist: the first index is 1".into()),
         ("f 1 2 5", "5:7+1 Error: vertex `5` does not exist: the file has 4 vertices".into()),
-        ("f 1 2 -5", "5:7+2 Error: `-5` reaches back too far: 4 vertices so far".into()),
+        (
+            "f 1 2 -5",
+            "5:7+2 Error: index `-5` reaches back too far: the file has 4 vertices before this statement".into(),
+        ),
         (
             "f -1 2 3\nf 1 2 99999999999999999999",
             "6:7+20 Error: vertex `99999999999999999999` does not exist: the file has 4 vertices".into(),
@@ -117,7 +120,7 @@ fn wrong_faces() {
         ("f 1 2 x", "5:7+1 Error: expected the number of a vertex, found `x`".into()),
         ("f 1 2 3.0", "5:7+3 Error: expected the number of a vertex, found `3.0`".into()),
         ("f 1 2 /1", "5:7+0 Error: expected the number of a vertex, found nothing".into()),
-        ("f 1 2 3////", format!("5:7+5 Error: a corner has at most 3 indices, found `3////` {form}")),
+        ("f 1 2 3////", format!("5:7+5 Error: a vertex reference can have at most 3 indices, found `3////` {form}")),
     ];
     for (text, expected) in cases {
         assert_eq!(findings(text), [expected], "{text}");
@@ -136,9 +139,12 @@ fn warnings_and_notes() {
     assert_eq!(findings(""), ["5:1+0 Warning: the mesh has no triangles"]);
     assert_eq!(read(b"", "m.obj").1, ["1:1+0 Warning: the mesh has no triangles"]);
     let unknown =
-        "5:1+6 Warning: 2 statements not understood and left out; the first is `usemlt` (did you mean `usemtl`?)";
+        "5:1+6 Warning: left out 2 statements with an unknown keyword; the first is `usemlt` (did you mean `usemtl`?)";
     assert_eq!(findings("usemlt a\nf 1 2 3\ncurv2 1 2\n"), [unknown]);
-    assert_eq!(findings("f 1 2 2\nf 1 2 3 1\n"), ["5:1+7 Note: 2 faces use a vertex twice; the first is here"]);
+    assert_eq!(
+        findings("f 1 2 2\nf 1 2 3 1\n"),
+        ["5:1+7 Note: 2 faces use a vertex twice; the first such face is here"]
+    );
 }
 
 #[test]
@@ -164,14 +170,14 @@ fn lines_points_and_lone_vertices_become_sticks_and_balls() {
     let named = |name: &str, triangles, positions| (name.to_string(), triangles, positions);
     // The scene contains two sticks with six sides each, and an octahedron.
     assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 1, 3), named("m.obj#red", 32, 30)]);
-    let note = "2 lines and 1 point without a surface: thin sticks and small balls are shown";
+    let note = "lines and points have no surface: thin sticks and small balls are shown for 2 lines and 1 point";
     assert_eq!(messages, [format!("m.obj:6:8 note {note}")]);
     let (scene, messages) = read(vertices);
     assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 24, 18)]);
-    assert!(messages[1].contains("3 points without a surface"), "{messages:?}");
+    assert!(messages[1].contains("are shown for 3 points"), "{messages:?}");
     let (none, messages) = read(&format!("{vertices}l 1 4\np 0 1\n"));
     assert!(none.is_none());
-    let wrong = ["vertex `4` does not exist: the file has 3 vertices", "vertex 0 does not exist: indices count from 1"];
+    let wrong = ["vertex `4` does not exist: the file has 3 vertices", "vertex 0 does not exist: the first index is 1"];
     assert_eq!(messages[1..], [format!("m.obj:4:5 error {}", wrong[0]), format!("m.obj:5:3 error {}", wrong[1])]);
     let (scene, messages) = read_in(
         folder.path(),
@@ -180,7 +186,7 @@ fn lines_points_and_lone_vertices_become_sticks_and_balls() {
         property float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n",
     );
     assert_eq!(meshes(&scene.unwrap()), [named("m.ply", 16, 12)]);
-    assert!(messages[1].contains("2 points without a surface"), "{messages:?}");
+    assert!(messages[1].contains("are shown for 2 points"), "{messages:?}");
 }
 
 #[test]

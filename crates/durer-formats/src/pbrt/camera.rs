@@ -52,7 +52,10 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<CropWindow> {
     for (name, is_share) in [("pixelbounds", false), ("cropwindow", true)] {
         let Some(all) = params.get(name).map(|param| param.numbers()) else { continue };
         let Ok(all) = <[f64; 4]>::try_from(all) else {
-            params.report.error(params.span(name), format!("`{name}` needs four numbers: from, to, from, to"));
+            params.report.error(
+                params.span(name),
+                format!("`{name}` needs four numbers: minimum x, maximum x, minimum y and maximum y"),
+            );
             return None;
         };
         let pixel = |i: usize| if is_share { (all[i] * sides[i]).ceil() } else { all[i] };
@@ -61,7 +64,7 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<CropWindow> {
     }
     let [left, right, top, bottom] = part.map(|pixel| pixel as u32);
     if left >= right || top >= bottom {
-        params.report.error(params.span(size_parameter?), "this part of the film has no pixels");
+        params.report.error(params.span(size_parameter?), "this part of the film contains no pixels");
         return None;
     }
     size_parameter.map(|_| (left, top, right - left, bottom - top))
@@ -188,7 +191,7 @@ impl Reader<'_> {
                 if size_parameter.is_some() {
                     params.report.error(
                         params.span("screenwindow"),
-                        "`screenwindow` needs four numbers: x from and to, y from and to",
+                        "`screenwindow` needs four numbers: minimum x, maximum x, minimum y and maximum y",
                     );
                 }
                 Window { middle: DVec2::ZERO, half: DVec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }

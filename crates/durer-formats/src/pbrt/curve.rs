@@ -85,17 +85,21 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
         let message = match basis {
             "bezier" => {
                 format!(
-                    "{} points do not make a curve of degree {degree}: give 1 more than a multiple of {degree}",
+                    "a Bézier curve of degree {degree} cannot have {} points: the number minus 1 must be a multiple of \
+                     {degree}",
                     points.len()
                 )
             }
-            _ => format!("{} points do not make a curve of degree {degree}: give more than {degree}", points.len()),
+            _ => format!(
+                "a curve of degree {degree} cannot have {} points: it needs more than {degree} points",
+                points.len()
+            ),
         };
         report.error(params.span("P"), message);
         return None;
     }
     if points.len() > MAX_POINTS {
-        report.error(params.span("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
+        report.error(params.span("P"), format!("a curve can have at most {MAX_POINTS} points"));
         return None;
     }
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();

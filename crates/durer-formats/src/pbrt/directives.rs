@@ -193,8 +193,11 @@ impl Reader<'_> {
             },
             "LookAt" => match look_at(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => report
-                    .error(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
+                None => report.error(
+                    at,
+                    "the eye and the target of `LookAt` must differ, and `up` must not be parallel to the viewing \
+                     direction",
+                ),
             },
             "Transform" | "ConcatTransform" => {
                 let map = matrix(self.numbers(at)?, at, report);
@@ -337,7 +340,7 @@ impl Reader<'_> {
             self.report.error(at, "`WorldBegin` is given twice");
         }
         if let Some(early) = self.too_early {
-            let error = Diagnostic::error("this must come after `WorldBegin`").code("bad-place").at(early);
+            let error = Diagnostic::error("this directive must come after `WorldBegin`").code("bad-place").at(early);
             self.report.push(error.related(at, "`WorldBegin` is here"));
         }
         self.in_world = true;
@@ -363,7 +366,7 @@ impl Reader<'_> {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
                 let error = Diagnostic::error(format!("`{end}` does not match the scope that is open"));
-                self.report.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
+                self.report.push(error.code("unclosed").at(at).related(*begun, "this scope is still open"));
                 return;
             }
             _ => {
@@ -412,11 +415,15 @@ impl Reader<'_> {
         if let Some(open) = self.texts.iter().find(|open| open.name == name) {
             let error = Diagnostic::error(format!("`{name}` includes itself")).code("bad-value").at(at);
             let own = open.at.start == 0 && open.at.end == 0;
-            return self.report.push(if own { error } else { error.related(open.at, "it is first included here") });
+            return self.report.push(if own {
+                error
+            } else {
+                error.related(open.at, format!("`{name}` is first included here"))
+            });
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.report.error(at, format!("too many files: more than {MAX_FILES} are included"));
+            return self.report.error(at, format!("more than {MAX_FILES} files are included"));
         }
         if self.texts.len() >= MAX_INCLUDE_DEPTH {
             return self.report.error(at, format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"));
@@ -453,7 +460,7 @@ impl Reader<'_> {
                 self.state = state;
                 return;
             }
-            self.report.push(Diagnostic::error("this is not closed").code("unclosed").at(at));
+            self.report.push(Diagnostic::error("this scope is not closed").code("unclosed").at(at));
         }
     }
 
@@ -464,8 +471,8 @@ impl Reader<'_> {
                 Scope::Transform => "TransformEnd",
                 Scope::Object | Scope::Import => "ObjectEnd",
             };
-            let error = Diagnostic::error("this is not closed").code("unclosed").at(at);
-            self.report.push(error.help(format!("a `{end}` is missing")));
+            let error = Diagnostic::error("this scope is not closed").code("unclosed").at(at);
+            self.report.push(error.help(format!("add the missing `{end}`")));
         }
         crate::glass_bodies::join_bodies(&mut self.scene, self.input.name);
         if self.emitters_only {

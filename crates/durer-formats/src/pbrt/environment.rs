@@ -84,8 +84,8 @@ impl Reader<'_> {
             Ok(picture) if map == EnvironmentMapping::Equirectangular => Some((picture, map)),
             Ok(picture) if picture.width == picture.height => Some((picture, map)),
             Ok(picture) if picture.width == 2 * picture.height => {
-                let what = "this picture is twice as wide as high: it is read as longitude and latitude, as in pbrt-v3, \
-                            with z up";
+                let what = "this picture is twice as wide as high, so it is read as longitude and latitude, as in \
+                            pbrt-v3, with z up";
                 self.report.unsupported(at, what);
                 Some((picture, EnvironmentMapping::Equirectangular))
             }
@@ -94,7 +94,7 @@ impl Reader<'_> {
                 self.report.error_with_help(
                     at,
                     message,
-                    Some("pbrt's `imgtool makeequiarea` makes such a picture".into()),
+                    Some("make a square picture with pbrt's `imgtool makeequiarea`".into()),
                 );
                 None
             }

@@ -97,7 +97,11 @@ impl Reader<'_> {
                 "the picture of a `goniometric` light must be square, found {} x {} pixels",
                 image.width, image.height
             );
-            self.report.error_with_help(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+            self.report.error_with_help(
+                at,
+                message,
+                Some("make a square picture with pbrt's `imgtool makeequiarea`".into()),
+            );
             return None;
         }
         Some(image)

@@ -32,9 +32,10 @@ fn color(params: &Params, name: &'static str) -> Color {
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
-            params
-                .report
-                .unsupported_once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
+            params.report.unsupported_once(
+                param.at,
+                "the `scale` of a light must be a colour in pbrt-v3: this number is ignored",
+            );
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()),

@@ -60,7 +60,7 @@ fn with_preset(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32;
                 return Medium { absorption, scattering, anisotropy: 0.0, density: None };
             }
             None => {
-                let message = format!("the medium `{name}` is unknown: its coefficients are used");
+                let message = format!("unknown medium preset `{name}`: the coefficients of the medium are used");
                 params.report.unsupported_once(params.span(preset), message);
             }
         }
@@ -129,12 +129,13 @@ impl Reader<'_> {
             let count = densities.len();
             self.report.error(
                 place,
-                format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {count}"),
+                format!("`density` needs {x} x {y} x {z} numbers, as given by `nx`, `ny` and `nz`, but has {count}"),
             );
             return None;
         }
         if let Some(bad) = densities.iter().position(|density| *density < 0.0) {
-            self.report.error(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
+            self.report
+                .error(place, format!("density number {} is {}, but must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
         // Surround the grid with zeros, because the density outside it is 0.

@@ -55,11 +55,14 @@ fn read_arrays(params: &Params, size: usize, default: &[u32]) -> Option<MeshArra
     };
     let place = params.get("indices").map_or(params.at, |param| param.values_at);
     if indices.len() % size != 0 {
-        report.error(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
+        report.error(place, format!("`indices` has {} numbers, which is not a multiple of {size}", indices.len()));
         sound = false;
     }
     if let Some(wrong) = indices.iter().find(|&&i| i < 0 || i >= count as i64) {
-        report.error(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
+        report.error(
+            place,
+            format!("`indices` contains {wrong}, but the points are numbered from 0 to {}", count as i64 - 1),
+        );
         sound = false;
     }
     let faces = indices.chunks_exact(size).map(|face| face.iter().map(|&i| i as u32).collect()).collect();
@@ -97,7 +100,7 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     let most = left.min(MAX_TRIANGLES);
     let (data, done) = loop_surface(&control, levels as u32, most);
     if i64::from(done) < levels {
-        let what = format!("more than {most} triangles: the surface is subdivided only {done} times");
+        let what = format!("the surface is subdivided only {done} times, to limit the number of triangles to {most}");
         params.report.unsupported_once(params.span("levels"), what);
     }
     Some(data.oriented(reversed))

@@ -147,7 +147,7 @@ pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) 
         let Some((kind, name)) = parse_declaration(&head, at, language, report) else { continue };
         if let Some(first) = list.iter().find(|param| param.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
-            report.push(error.related(first.at, "first here"));
+            report.push(error.related(first.at, "the first one is here"));
             continue;
         }
         if fits(kind, &name, &values, values_at, report) {
@@ -212,14 +212,14 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
         loop {
             let Some(next) = text.next(report) else {
                 let error = Diagnostic::error("these brackets are not closed").code("unclosed").at(first.at);
-                report.push(error.help("a `]` is missing"));
+                report.push(error.help("add the missing `]`"));
                 return None;
             };
             end = next.at;
             match next.token {
                 Token::Close => break,
                 Token::Open => {
-                    report.error(next.at, "brackets cannot be nested: a `]` is missing before this");
+                    report.error(next.at, "brackets cannot be nested: a `]` is missing before this `[`");
                     sound = false;
                 }
                 _ => sound &= add(next, text),
@@ -265,7 +265,7 @@ pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f6
         Err(_) => {
             let point = word.replace(',', ".");
             let help = (point != word && point.parse::<f32>().is_ok())
-                .then(|| format!("decimals are written with a point: `{point}`"));
+                .then(|| format!("write decimals with a point: `{point}`"));
             report.error_with_help(at, format!("expected a number, found {}", text.quoted(at)), help);
         }
     }
@@ -296,8 +296,8 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport
         (Kind::Spectrum, Values::Texts(_)) => true,
         (Kind::Spectrum, Values::Numbers(all)) if all.len() % 2 == 0 && !all.is_empty() => true,
         (Kind::Spectrum, _) => complain("pairs of wavelength and value, or a name"),
-        (Kind::Vec2, _) if !rows(2) => complain("a multiple of two numbers"),
-        (Kind::Vec3, _) if !rows(3) => complain("a multiple of three numbers"),
+        (Kind::Vec2, _) if !rows(2) => complain("pairs of numbers"),
+        (Kind::Vec3, _) if !rows(3) => complain("triples of numbers"),
         (Kind::Rgb | Kind::Xyz, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
         (Kind::Integer, Values::Numbers(all)) => {
             let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
@@ -397,13 +397,13 @@ impl<'s> Params<'s> {
 
     /// Returns a parameter that consists of pairs of numbers.
     pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
-        let param = self.typed(name, &[Kind::Vec2, Kind::Float], "rows of two numbers")?;
+        let param = self.typed(name, &[Kind::Vec2, Kind::Float], "a list of pairs of numbers")?;
         Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
     }
 
     /// Returns a parameter that consists of triples of numbers.
     pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
-        self.typed(name, &[Kind::Vec3], "rows of three numbers").map(Param::triples)
+        self.typed(name, &[Kind::Vec3], "a list of triples of numbers").map(Param::triples)
     }
 
     /// Returns the first three numbers of a parameter.

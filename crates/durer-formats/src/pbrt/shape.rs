@@ -94,7 +94,7 @@ impl Reader<'_> {
                 }
                 let mut help = suggest(other, cached);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
-                    help = Some("this shape belongs to pbrt-v3, not to pbrt-v4".into());
+                    help = Some(format!("`{other}` is a shape of pbrt-v3, not of pbrt-v4"));
                 }
                 return self.report.error_with_help(at, format!("unknown shape `{other}`"), help);
             }

@@ -91,7 +91,7 @@ fn named_spectrum(name: &str, at: Span, params: &Params) -> Option<SpectrumSourc
             let (help, message) = match params.language {
                 Language::V3 => (error.help(), format!("cannot read the spectrum: {error}")),
                 Language::V4 => {
-                    (suggest(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
+                    (suggest(name, named::names()), format!("pbrt has no spectrum with the name `{name}`, and {error}"))
                 }
             };
             params.report.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });

@@ -27,7 +27,7 @@ pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     let [columns, rows] = counts(params, 2)?;
     let heights = params.floats("Pz").unwrap_or_default();
     if heights.len() != columns as usize * rows as usize {
-        let message = format!("`Pz` has {} values for {columns} x {rows} points", heights.len());
+        let message = format!("`Pz` has {} values, but needs one for each of {columns} x {rows} points", heights.len());
         params.report.error(params.span("Pz"), message);
         return None;
     }
@@ -47,7 +47,8 @@ pub(super) fn nurbs(params: &Params, reversed: bool) -> Option<MeshData> {
     };
     let wanted = counts[0] as usize * counts[1] as usize;
     if points.len() != wanted || points.iter().any(|p| p.w <= 0.0) {
-        let message = format!("a NURBS surface needs {wanted} points, `P` or `Pw`, with weights above 0");
+        let message =
+            format!("a NURBS surface needs {wanted} points, given by `P` or `Pw`, with weights of more than 0");
         params.report.error(params.at, message);
         return None;
     }
@@ -61,7 +62,8 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     if !(2..=HIGHEST.min(i64::from(count))).contains(&order) || all.len() != count as usize + order as usize || !rising
     {
         let message = format!(
-            "`{}` must be from 2 to the number of points, and `{}` needs as many increasing numbers as order plus points",
+            "`{}` must be from 2 to the number of points, and `{}` must have ascending numbers, as many as the order \
+             plus the number of points",
             names[0], names[1]
         );
         params.report.error(params.span(names[1]), message);
@@ -72,7 +74,7 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     let end = |name, default: f64| params.float(name).map_or(default, f64::from).clamp(first, last);
     let (from, to) = (end(names[2], first), end(names[3], last));
     if from >= to {
-        params.report.error(params.at, "this NURBS surface is empty: its parameter range has no length");
+        params.report.error(params.at, "this NURBS surface is empty, because its parameter range has no length");
         return None;
     }
     Some(NurbsSide { knots: all, order, from, to })

@@ -42,7 +42,7 @@ impl Reader<'_> {
             let help = suggest(kind, ["float", "spectrum"]);
             return self.report.error_with_help(
                 kind_at,
-                format!("textures are `float` or `spectrum`, not `{kind}`"),
+                format!("a texture must be of type `float` or `spectrum`, not `{kind}`"),
                 help,
             );
         }
@@ -60,7 +60,7 @@ impl Reader<'_> {
             "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
                 (texture, Texture::Constant(by)) | (Texture::Constant(by), texture) => texture.scaled(by),
                 (texture, other) => self.combine([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
-                    instead("pictures with different mappings cannot be combined, the first is used");
+                    instead("the first of two pictures with different mappings is used");
                     texture
                 }),
             },
@@ -71,7 +71,7 @@ impl Reader<'_> {
                     (texture, Texture::Constant(by)) => texture.scaled(by),
                     (Texture::Constant(by), texture) => texture.scaled(by),
                     (texture, _) => {
-                        instead("two pictures cannot be combined, the first is used");
+                        instead("the first of two pictures is used");
                         texture
                     }
                 }
@@ -81,12 +81,12 @@ impl Reader<'_> {
                 let amount = self.texture_value(&params, "amount", false, Vec3::splat(0.5)).constant().map(|c| c.x);
                 params.mark_known(&["dir"]);
                 let share = amount.unwrap_or_else(|| {
-                    instead("its `amount` cannot be a picture, 0.5 is used");
+                    instead("an `amount` of 0.5 is used in place of a picture");
                     0.5
                 });
                 let mixed = || self.combine([&first, &second], at, |a, b| a.lerp(b, share));
                 both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
-                    instead("pictures with different mappings cannot be mixed, the first is used");
+                    instead("the first of two pictures with different mappings is used");
                     if first.constant().is_some() { second } else { first }
                 })
             }
@@ -106,7 +106,7 @@ impl Reader<'_> {
                 match corners.each_ref().map(Texture::constant) {
                     [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
                     all => {
-                        instead("the mean of its corners is used");
+                        instead("the mean of its four corners is used");
                         Texture::Constant(all.into_iter().flatten().sum::<Color>() / 4.0)
                     }
                 }

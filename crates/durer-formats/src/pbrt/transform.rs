@@ -66,7 +66,7 @@ pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, report:
     if let Some(open) = open
         && text.next(report).is_none_or(|token| token.token != Token::Close)
     {
-        let message = format!("these brackets must hold {N} numbers and be closed");
+        let message = format!("these brackets must contain {N} numbers and be closed");
         report.push(Diagnostic::error(message).code("unclosed").at(open));
         return None;
     }
@@ -78,7 +78,7 @@ pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DA
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
     if d == 0.0 || [a, b, c].iter().any(|x| (x / d).abs() > 1e-9) {
-        report.error(at, "this matrix is not affine: its columns must end in 0 0 0 1");
+        report.error(at, "this matrix is not affine: the last numbers of its columns must be 0 0 0 1");
         return None;
     }
     let transform = DAffine3::from_mat4(matrix * (1.0 / d));
@@ -90,7 +90,7 @@ pub(super) fn invertible(transform: DAffine3, at: Span, report: &SharedReport) -
     let determinant = transform.matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() || !transform.inverse().is_finite() {
         report.push(
-            Diagnostic::error("this transform flattens space, or leaves the range of numbers")
+            Diagnostic::error("this transform flattens space, or has numbers that are too large")
                 .code("flat-transform")
                 .at(at),
         );

@@ -66,7 +66,7 @@ impl Numbers<'_> {
         for _ in 0..count {
             let (angle, start) = self.next(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
-                return Err(self.error(start, self.at, format!("the {what}s must ascend")));
+                return Err(self.error(start, self.at, format!("the {what}s must be in ascending order")));
             }
             if angle.abs() > 360.0 {
                 return Err(self.error(start, self.at, format!("a {what} must lie between -360 and 360 degrees")));
@@ -100,7 +100,7 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
         return Err(numbers.error(
             0,
             text.lines().next().unwrap_or("").len(),
-            "no line `TILT=`: the file is not IES or EULUMDAT, or is damaged",
+            "the file has no line `TILT=`, so it is not an IES or EULUMDAT file, or is damaged",
         ));
     };
     match tilt.as_str() {
@@ -119,7 +119,7 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
             let message = format!("tilt data in another file (`{other}`) is not supported");
             return Err(Box::new(
                 (*numbers.error(start, numbers.at, message))
-                    .help("write `TILT=NONE`: this is equivalent for a luminaire in its usual position"),
+                    .help("write `TILT=NONE`, which is equivalent for a luminaire in its usual position"),
             ));
         }
     }
@@ -150,10 +150,10 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     let scale = multiplier * ballast * if reserved > 0.0 { reserved } else { 1.0 };
     let mut candela = Vec::with_capacity(verticals * horizontals);
     for i in 0..verticals * horizontals {
-        let what = format!("candela number {} of {}", i + 1, verticals * horizontals);
+        let what = format!("candela value {} of {}", i + 1, verticals * horizontals);
         let (value, start) = numbers.next(&what)?;
         if value < 0.0 {
-            return Err(numbers.error(start, numbers.at, "candela must not be less than 0"));
+            return Err(numbers.error(start, numbers.at, "a candela value must not be less than 0"));
         }
         let value = (scale * value) as f32;
         if !value.is_finite() {
@@ -175,15 +175,18 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
         // The file does not define the remaining angles, so close the circle with the values of the
         // first angle.
-        warn(angles.clone(), "the horizontal angles end before 360: the gap is interpolated linearly");
+        warn(angles.clone(), "the horizontal angles end before 360 degrees: the gap is interpolated linearly");
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
     }
     if candela.iter().all(|candela| *candela == 0.0) {
-        warn(angles, "this luminaire is dark: all its candela are 0");
+        warn(angles, "this luminaire emits no light, because all its candela values are 0");
     }
     if let Some(more) = more {
-        warn(more, "more numbers follow the last candela value: are there decimal commas or too few angles?");
+        warn(
+            more,
+            "more numbers follow the last candela value, for example because of decimal commas or missing angles",
+        );
     }
     Ok((PhotometricProfile { kind, vertical, horizontal, candela }, odd))
 }
@@ -265,7 +268,7 @@ mod tests {
     fn warning_has_line_and_column() {
         for (text, expected) in [
             ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n7 8\n9", "6:1 more numbers follow"),
-            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this luminaire is dark"),
+            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this luminaire emits no light"),
             (
                 "TILT=NONE\n1 1 1 2 3 1 2 0 0 0 1 1 1\n0 90\n0 90 270\n1 1 2 2 3 3",
                 "4:1 the horizontal angles end before 360",
@@ -314,11 +317,17 @@ mod tests {
     #[test]
     fn error_has_line_and_column() {
         for (text, error) in [
-            ("IESNA:LM-63-2002\n1 2 3\n", "1:1 no line `TILT=`: the file is not IES or EULUMDAT, or is damaged"),
-            ("TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 90 45\n0\n1 2 3", "4:6 the vertical angles must ascend"),
+            (
+                "IESNA:LM-63-2002\n1 2 3\n",
+                "1:1 the file has no line `TILT=`, so it is not an IES or EULUMDAT file, or is damaged",
+            ),
+            (
+                "TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 90 45\n0\n1 2 3",
+                "4:6 the vertical angles must be in ascending order",
+            ),
             (
                 "TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 45 90\n0\n1 2",
-                "6:4 the file ends where the candela number 3 of 3 should be",
+                "6:4 the file ends where the candela value 3 of 3 should be",
             ),
             ("TILT=NONE\n1 1 1 1e9 1 1 2", "2:7 the number of vertical angles must be a whole number from 1 to 4000"),
             ("TILT=lamp.tlt\n1 1", "1:1 tilt data in another file (`LAMP.TLT`) is not supported"), // prose: keep

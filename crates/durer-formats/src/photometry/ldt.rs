@@ -93,7 +93,7 @@ impl<'t> Lines<'t> {
         for _ in 0..count {
             let (angle, start, end) = self.number(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
-                return Err(self.error(start, end, format!("the {what}s must ascend")));
+                return Err(self.error(start, end, format!("the {what}s must be in ascending order")));
             }
             if !(0.0..=most).contains(&angle) {
                 return Err(self.error(start, end, format!("a {what} must lie between 0 and {most} degrees")));
@@ -175,8 +175,11 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
         _ => {}
     }
     if profile.candela.iter().all(|candela| *candela == 0.0) {
-        let error =
-            lines.error(angles.start, angles.end, "this luminaire is dark: its flux or all its intensities are 0");
+        let error = lines.error(
+            angles.start,
+            angles.end,
+            "this luminaire emits no light, because its flux or all its intensities are 0",
+        );
         diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
     }
     Ok(profile)
@@ -206,7 +209,7 @@ impl Lines<'_> {
         let first = if first < 0.0 { first + 360.0 } else { first };
         let named =
             if last.is_nan() { format!("a C plane at {first}") } else { format!("C planes at {first} and {last}") };
-        Err(self.error(at.start, at.end, format!("with this symmetry there must be {named} degrees")))
+        Err(self.error(at.start, at.end, format!("for this symmetry, the file must have {named} degrees")))
     }
 }
 
@@ -316,9 +319,9 @@ mod tests {
             (line(4, "1e9"), "4:1 the number of C planes must be a whole number from 1 to 721"),
             (line(24, "-1"), "24:1 the conversion factor must not be less than 0"),
             (line(29, "nan"), "29:1 expected the flux of the light sources, found `nan`"),
-            (line(44, " 0"), "44:2 the C angles must ascend"),
-            (line(44, "80"), "43:1 with this symmetry there must be C planes at 0 and 90 degrees"),
-            (line(29, "0"), "43:1 this luminaire is dark: its flux or all its intensities are 0"),
+            (line(44, " 0"), "44:2 the C angles must be in ascending order"),
+            (line(44, "80"), "43:1 for this symmetry, the file must have C planes at 0 and 90 degrees"),
+            (line(29, "0"), "43:1 this luminaire emits no light, because its flux or all its intensities are 0"),
             (line(90, "-1"), "90:1 the intensity number 7 of 74 must not be less than 0"),
             (
                 good.lines().take(100).collect::<Vec<_>>().join("\n"),

@@ -43,7 +43,10 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
             self.check_rows(element)?;
             match &self.bytes[element.name.clone()] {
                 b"vertex" if has_vertices => {
-                    self.report.error(element.name.clone(), "a second element `vertex`");
+                    self.report.error(
+                        element.name.clone(),
+                        "a file can have only one element `vertex`, and this is the second",
+                    );
                     return Err(ErrorReported);
                 }
                 b"vertex" => {
@@ -88,12 +91,12 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         if (left as u64) < element.rows.saturating_mul(size as u64) {
             let what = quoted(&self.bytes[element.name.clone()]);
             let message = format!(
-                "the header promises {} {what} rows of {size} bytes, but only {left} bytes follow",
+                "the header declares {} rows of {size} bytes for element {what}, but only {left} bytes follow",
                 element.rows
             );
             let end = self.bytes.len();
             let here = self.report.span(element.name.clone());
-            self.report.error(end..end, message).related = Some((here, "promised here".into()));
+            self.report.error(end..end, message).related = Some((here, "the rows are declared here".into()));
             return Err(ErrorReported);
         }
         Ok(())
@@ -140,7 +143,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         match usize::try_from(length) {
             Ok(length) if length <= most => Ok(length),
             Ok(_) => {
-                let message = format!("the list should have {length} values, but the file ends before");
+                let message = format!("the list should have {length} values, but the file ends before the last value");
                 self.report.error(self.values.last(), message);
                 Err(ErrorReported)
             }
@@ -159,9 +162,9 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
             ValueError::End => {
                 let name = quoted(&self.bytes[element.name.clone()]);
                 let rows = count_text(element.rows as usize, "row", "rows");
-                let message = format!("the file ends in row {} of {name}, which should have {rows}", row + 1);
+                let message = format!("the file ends in row {} of element {name}, which should have {rows}", row + 1);
                 let promised = self.report.span(element.name.clone());
-                self.report.error(at, message).related = Some((promised, "promised here".into()));
+                self.report.error(at, message).related = Some((promised, "the rows are declared here".into()));
             }
             ValueError::Number(error) => self.wrong_number(error, at),
         }
@@ -191,7 +194,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         if !rest.is_empty() {
             let bytes = count_text(rest.len(), "byte", "bytes");
             self.report.warning(rest.start..rest.start + 1, format!("ignored {bytes} after the last row")).help =
-                Some("the header may promise too few rows or properties".into());
+                Some("check whether the header declares too few rows or properties".into());
         }
     }
 }

@@ -137,7 +137,7 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
             return None;
         }
     }
-    reader.report.error(bytes.len()..bytes.len(), "the file ends within the header: `end_header` is missing");
+    reader.report.error(bytes.len()..bytes.len(), "the file ends within the header, because `end_header` is missing");
     None
 }
 
@@ -209,11 +209,11 @@ impl<'a> HeaderReader<'a, '_> {
         let (count, number_type) = (count.map(|count| self.scalar(count)), self.scalar(number_type));
         let (Some(number_type), Some(count)) = (number_type, count.map_or(Some(None), |c| c.map(Some))) else { return };
         if count.is_some_and(|count| !count.is_integer()) {
-            self.report.error(words[2].clone(), "the length of a list must be of an integer type");
+            self.report.error(words[2].clone(), "the length of a list must have an integer type");
         }
         match self.elements.last_mut() {
             Some(element) => element.properties.push(Property { name: name.clone(), number_type, length_type: count }),
-            None => _ = self.report.error(words[0].clone(), "a property before the first `element`"),
+            None => _ = self.report.error(words[0].clone(), "a `property` line must come after an `element` line"),
         }
     }
 
@@ -231,7 +231,7 @@ impl<'a> HeaderReader<'a, '_> {
     fn finish(self, end: Range<usize>, body: usize) -> Option<Header> {
         if self.encoding.is_none() && !self.report.has_errors() {
             self.report.error(end, "the header has no `format` line").help =
-                Some("the second line must be like `format ascii 1.0`".into());
+                Some("add a second line such as `format ascii 1.0`".into());
         }
         let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
         Some(Header { encoding, elements: self.elements, flat: self.flat, body })

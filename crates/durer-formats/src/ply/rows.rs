@@ -4,7 +4,7 @@ use super::body::{ErrorReported, RowReader};
 use super::header::{Element, Property};
 use super::values::{ValueError, ValueReader};
 use crate::number::NumberError;
-use crate::report::{count_text, quoted};
+use crate::report::{quoted, range_text};
 use durer_diag::did_you_mean;
 use durer_image::decode_srgb;
 use durer_scene::math::{Vec2, Vec3};
@@ -68,8 +68,9 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                 Some(_) if column >= 6 => continue,
                 Some(first) => {
                     let first = self.report.span(element.properties[first].name.clone());
-                    let message = format!("a second property {}", quoted(name));
-                    self.report.error(property.name.clone(), message).related = Some((first, "the first".into()));
+                    let message = format!("the element `vertex` has a second property {}", quoted(name));
+                    self.report.error(property.name.clone(), message).related =
+                        Some((first, "the first one is here".into()));
                 }
                 None => found[column] = Some(i),
             }
@@ -191,7 +192,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         };
         let property = &element.properties[list];
         if property.length_type.is_none() || !property.number_type.is_integer() {
-            self.report.error(property.name.clone(), "the corners must be a list of an integer type");
+            self.report.error(property.name.clone(), "the vertex indices must be a list with an integer type");
             return Err(ErrorReported);
         }
         Ok(list)
@@ -212,8 +213,8 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                 Ok(-1) if strips => self.corners.push(NO_INDEX),
                 Ok(index) => {
                     all_good = false;
-                    let has = count_text(vertices, "vertex", "vertices");
-                    let message = format!("vertex {index} does not exist: the file has {has}, counted from 0");
+                    let has = range_text(vertices, "vertex", "vertices");
+                    let message = format!("vertex {index} does not exist: the file has {has}");
                     self.report.error(self.values.last(), message);
                     if self.report.is_full() {
                         return Err(ErrorReported);
@@ -226,7 +227,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             }
         }
         if length < 3 && !strips {
-            self.report.error(length_at, format!("a face needs at least 3 corners, found {length}"));
+            self.report.error(length_at, format!("a face needs at least 3 vertices, found {length}"));
             return if self.report.is_full() { Err(ErrorReported) } else { Ok(false) };
         }
         Ok(all_good)
@@ -240,7 +241,8 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             .triangulate(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
             let message = format!("this face is too complex to triangulate ({} vertices)", self.corners.len());
-            self.report.error(self.values.last(), message).help = Some("triangulate it in a modelling program".into());
+            self.report.error(self.values.last(), message).help =
+                Some("triangulate the face in a modelling program".into());
             ErrorReported
         })
     }

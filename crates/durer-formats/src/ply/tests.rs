@@ -85,7 +85,7 @@ fn wrong_headers() {
         (
             "format ascii 1.0\n",
             "",
-            "8:1+10 Error: the header has no `format` line (the second line must be like `format ascii 1.0`)",
+            "8:1+10 Error: the header has no `format` line (add a second line such as `format ascii 1.0`)",
         ),
         (
             "format ascii 1.0",
@@ -116,13 +116,21 @@ fn wrong_headers() {
             "4:1+14 Error: expected `property <type> <name>` or `property list <type> <type> <name>`",
         ),
         ("property float x\n", "", "3:9+6 Error: the vertices have no property `x`"),
-        ("property float y", "property float x\nproperty float y", "5:16+1 Error: a second property `x`"),
+        (
+            "property float y",
+            "property float x\nproperty float y",
+            "5:16+1 Error: the element `vertex` has a second property `x`",
+        ),
         ("property float x", "property list int float x", "4:25+1 Error: `x` must be a number, not a list"),
-        ("element vertex 3", "property int a\nelement vertex 3", "3:1+8 Error: a property before the first `element`"),
+        (
+            "element vertex 3",
+            "property int a\nelement vertex 3",
+            "3:1+8 Error: a `property` line must come after an `element` line",
+        ),
         ("element vertex 3", "element vertices 3", "3:9+8 Error: the file has no element `vertex`"),
-        ("list uchar int", "list float int", "8:15+5 Error: the length of a list must be of an integer type"),
-        ("list uchar int", "list uchar float", "8:27+12 Error: the corners must be a list of an integer type"),
-        ("list uchar int", "int", "8:14+12 Error: the corners must be a list of an integer type"),
+        ("list uchar int", "list float int", "8:15+5 Error: the length of a list must have an integer type"),
+        ("list uchar int", "list uchar float", "8:27+12 Error: the vertex indices must be a list with an integer type"),
+        ("list uchar int", "int", "8:14+12 Error: the vertex indices must be a list with an integer type"),
         (
             "vertex_index",
             "vertex_indexes",
@@ -133,7 +141,7 @@ fn wrong_headers() {
         assert_eq!(finding(from, to), expected);
     }
     let cut = &TRIANGLE[..TRIANGLE.find("end_header").unwrap()];
-    let expected = "9:1+0 Error: the file ends within the header: `end_header` is missing";
+    let expected = "9:1+0 Error: the file ends within the header, because `end_header` is missing";
     assert_eq!(read(cut.as_bytes(), "m.ply").1, [expected]);
     assert_eq!(read(b"", "m.ply").1, ["1:1+0 Error: expected `ply` in the first line, found ``"]);
 }
@@ -144,28 +152,30 @@ fn wrong_rows() {
     for (from, to, expected) in [
         ("1 0 0", "1 x 0", "11:3+1 Error: expected a number, found `x`".to_string()),
         ("1 0 0", "1 0 nan", format!("11:5+3 Error: expected a finite number, found `nan` {limit}")),
-        ("3 0 1 2", "3 0 1 3", "13:7+1 Error: vertex 3 does not exist: the file has 3 vertices, counted from 0".into()),
-        (
-            "3 0 1 2",
-            "3 0 -1 2",
-            "13:5+2 Error: vertex -1 does not exist: the file has 3 vertices, counted from 0".into(),
-        ),
+        ("3 0 1 2", "3 0 1 3", "13:7+1 Error: vertex 3 does not exist: the file has only the vertices 0 to 2".into()),
+        ("3 0 1 2", "3 0 -1 2", "13:5+2 Error: vertex -1 does not exist: the file has only the vertices 0 to 2".into()),
         ("3 0 1 2", "3 0 1.5 2", "13:5+3 Error: expected a whole number, found `1.5`".into()),
-        ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 corners, found 2".into()),
+        ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 vertices, found 2".into()),
         ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have -1 values".into()),
         ("3 0 1 2", "200 0 1 2", "13:1+3 Error: the list should have 200 values, but the file ends before".into()),
-        ("3 0 1 2\n", "", "13:1+0 Error: the file ends in row 1 of `face`, which should have 1 row".into()),
-        ("3 0 1 2\n", "4 0 1 2 \n", "14:1+0 Error: the file ends in row 1 of `face`, which should have 1 row".into()),
+        ("3 0 1 2\n", "", "13:1+0 Error: the file ends in row 1 of element `face`, which should have 1 row".into()),
+        (
+            "3 0 1 2\n",
+            "4 0 1 2 \n",
+            "14:1+0 Error: the file ends in row 1 of element `face`, which should have 1 row".into(),
+        ),
         (
             "3 0 1 2",
             "3 0 1 2\n 7 7",
-            "14:2+1 Warning: ignored 4 bytes after the last row (the header may promise too few rows or properties)"
+            "14:2+1 Warning: ignored 4 bytes after the last row (check whether the header declares too few rows or \
+             properties)"
                 .into(),
         ),
         (
             "face 1",
             "face 0",
-            "13:1+1 Warning: ignored 8 bytes after the last row (the header may promise too few rows or properties)"
+            "13:1+1 Warning: ignored 8 bytes after the last row (check whether the header declares too few rows or \
+             properties)"
                 .into(),
         ),
     ] {
@@ -206,8 +216,8 @@ fn promised_counts_reserve_no_memory() {
             assert!(mesh.is_none() && findings.len() == 1, "{findings:?}");
         }
     }
-    let short =
-        "10:1+0 Error: the header promises 9223372036854775807 `vertex` rows of 12 bytes, but only 0 bytes follow";
+    let short = "10:1+0 Error: the header declares 9223372036854775807 rows of 12 bytes for element `vertex`, but only \
+                 0 bytes follow";
     assert_eq!(read(header("binary_little_endian", huge, "0").as_bytes(), "m.ply").1, [short]);
     let mut list = header("binary_little_endian", "0", "1").into_bytes();
     list.extend(i32::MAX.to_le_bytes());

@@ -38,7 +38,7 @@ impl RadPrimitive {
         let texts = (0..next()?.count(report)?).map(|_| next()).collect::<Option<_>>()?;
         let wholes = next()?;
         if wholes.count(report)? != 0 {
-            report.error(wholes.at, "primitives have no integer arguments: this must be 0");
+            report.error(wholes.at, "the number of integer arguments of a primitive must be 0");
             return None;
         }
         let count = next()?.count(report)?;

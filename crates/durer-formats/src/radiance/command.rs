@@ -49,7 +49,7 @@ impl Reader<'_> {
             "xform" => {
                 let Some((places, files, beside)) = xform(self, args, &places) else { return };
                 if files.is_empty() {
-                    self.report.error(name.at, "`xform` needs a file here");
+                    self.report.error(name.at, "`xform` needs a file name here");
                 }
                 places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place, beside)));
             }
@@ -166,7 +166,7 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             "-b" | "-r" | "-n" => {
                 reader.report.unsupported_once(
                     option.at,
-                    "bevelled and rounded edges of `genbox` have no counterpart: they are sharp",
+                    "bevelled and rounded edges of `genbox` have no counterpart: sharp edges are used",
                 );
                 rest = rest.get(1..).unwrap_or_default();
             }
@@ -199,7 +199,7 @@ fn reversed_if(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
 
 fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveContext) -> Option<Facets> {
     if args.len() < 3 {
-        reader.report.error(name.at, "`genprism` needs a material, a name and the corners of its base");
+        reader.report.error(name.at, "`genprism` needs a material, a name and the vertices of its base");
         return None;
     }
     let (corners, mut rest) = match args[2].text.parse::<usize>() {
@@ -207,7 +207,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
             (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
         }
         Ok(_) => {
-            reader.report.error(args[2].at, "the base needs at least 3 corners, with two numbers each");
+            reader.report.error(args[2].at, "the base needs at least 3 vertices with 2 numbers each");
             return None;
         }
         Err(_) => {
@@ -218,8 +218,9 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
                 list.push(word.number(reader.report)?);
             }
             if list.len() < 6 || list.len() % 2 != 0 {
-                let messages = quoted(args[2].text.as_bytes());
-                reader.report.error(args[2].at, format!("{messages} needs pairs of numbers for at least 3 corners")); // prose: keep
+                let name = quoted(args[2].text.as_bytes());
+                let message = format!("the file {name} must contain at least 3 vertices with 2 numbers each");
+                reader.report.error(args[2].at, message);
                 return None;
             }
             (list, &args[3..])
@@ -236,9 +237,10 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
             "-c" => closed = false,
             "-e" => ends = false,
             "-r" if !more.is_empty() => {
-                reader
-                    .report
-                    .unsupported_once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
+                reader.report.unsupported_once(
+                    option.at,
+                    "rounded edges of `genprism` have no counterpart: sharp edges are used",
+                );
                 rest = &more[1..];
             }
             _ => {

@@ -33,7 +33,7 @@ impl Table {
         let first = next()?;
         let dimensions = first.count(report)?;
         if !(1..=MAX_DIMENSIONS).contains(&dimensions) {
-            report.error(first.at, "a table has 1 to 8 coordinates");
+            report.error(first.at, "a table must have from 1 to 8 coordinates");
             return None;
         }
         let mut axes = Vec::new();

@@ -56,7 +56,7 @@ impl Reader<'_> {
         if existing.is_none() {
             if self.profiles.len() >= MAX_PROFILES {
                 let message =
-                    format!("more than {MAX_PROFILES} directional distributions of emitters: the rest are left out");
+                    format!("emitters have more than {MAX_PROFILES} directional distributions: the rest are left out");
                 self.report.warn_once("too-many-lamps", span, message);
                 return None;
             }

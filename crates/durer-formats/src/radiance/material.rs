@@ -178,7 +178,7 @@ impl Reader<'_> {
                 trans(color, [value(3), value(4), value(5)], [0.1; 2])
             }
             "BRTDfunc" => {
-                instead("the diffuse colour of its front is used");
+                instead("the diffuse colour of its front face is used");
                 matte(color)
             }
             "BSDF" | "aBSDF" | "WGMDfunc" => {
@@ -214,15 +214,15 @@ impl Reader<'_> {
             }
             "mist" => return self.mist(primitive),
             "antimatter" => {
-                instead("it is left out and removes nothing");
+                instead("the `antimatter` is left out and removes nothing");
                 return ConvertedModifier::void();
             }
             "illum" | "mirror"
                 if primitive.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") =>
             {
                 instead(match kind {
-                    "illum" => "its substitute is used, which transmits light itself",
-                    _ => "its substitute is used, which does not mirror lights",
+                    "illum" => "its substitute material is used, which transmits light itself",
+                    _ => "its substitute material is used, which does not mirror lights",
                 });
                 let other = self.modifiers[number].others[0];
                 return match other {
@@ -235,12 +235,12 @@ impl Reader<'_> {
             }
             "light" | "glow" | "illum" => {
                 if kind == "illum" {
-                    instead("it becomes a visible emitter");
+                    instead("the surface becomes a visible emitter");
                 }
                 if kind == "glow" && primitive.number(3).is_some_and(|reach| reach != 0.0) {
                     report.unsupported_once(
                         at,
-                        "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance",
+                        "the maximum radius of a `glow` has no counterpart: surfaces at any distance are illuminated",
                     );
                 }
                 if let Some(spread) = above.spread.clone() {

@@ -51,7 +51,8 @@ impl Reader<'_> {
                 Some((self.scene.materials.len() - 1) as u32)
             }
             [first, second] if glass => {
-                self.report.unsupported_once(at, "glass bodies cannot be partly transparent: they are shown in full");
+                self.report
+                    .unsupported_once(at, "glass bodies cannot be partly transparent: the whole glass body is shown");
                 first.or(second)
             }
             // If one of the two materials is missing, the result is partly transparent.

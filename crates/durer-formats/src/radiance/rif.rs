@@ -67,7 +67,7 @@ impl Reader<'_> {
         }
         if !settings.iter().any(|setting| matches!(setting.name, "scene" | "illum")) {
             let at = durer_diag::Span { file, start: 0, end: bytes.len().min(1) as u32 };
-            let help = "octrees are not supported: name their source with `scene = FILE.rad`";
+            let help = "octrees are not supported: name the source file of the octree with `scene = FILE.rad`";
             self.report.error_with_help(at, "this file names no scene", Some(help.into()));
         }
         let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);

@@ -28,9 +28,10 @@ impl Reader<'_> {
         let direction = place.map.transform_vector3(primitive.point(0)).normalize_or_zero();
         let degrees = primitive.numbers[3].abs() as f32;
         if direction == DVec3::ZERO || degrees == 0.0 || degrees > 360.0 {
-            return self
-                .report
-                .error(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
+            return self.report.error(
+                at,
+                "a source needs a direction other than 0 0 0, and an angle of more than 0 and at most 360 degrees",
+            );
         }
         let Some(converted) = modifier.map(|modifier| self.convert(modifier)) else { return };
         let (radiance, sky) = match &converted.kind {

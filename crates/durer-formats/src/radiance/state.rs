@@ -159,10 +159,8 @@ impl<'a> Reader<'a> {
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.material_limit_reached && self.scene.materials.len() > 3 * self.modifiers.len() + MAX_MATERIALS {
             self.material_limit_reached = true;
-            self.report.error(
-                at,
-                format!("more than {MAX_MATERIALS} materials result from patterns and mixtures with `void`"),
-            );
+            self.report
+                .error(at, format!("patterns and mixtures with `void` result in more than {MAX_MATERIALS} materials"));
         }
         self.material_limit_reached
     }
@@ -173,7 +171,7 @@ impl<'a> Reader<'a> {
         self.files += 1;
         if place.depth >= MAX_DEPTH || self.files > MAX_FILES {
             let message = match place.depth >= MAX_DEPTH {
-                true => format!("files are nested more than {MAX_DEPTH} levels deep: does one include itself?"),
+                true => format!("files are nested more than {MAX_DEPTH} levels deep, or a file includes itself"),
                 false => format!("more than {MAX_FILES} files are included"),
             };
             return self.report.error(name.at, message);
@@ -267,7 +265,7 @@ impl<'a> Reader<'a> {
         let number = self.names.get(&name.text).copied();
         if number.is_none() {
             let help = suggest(&name.text, self.names.keys().map(String::as_str));
-            let help = help.or_else(|| Some("files with materials must precede the files that use them".into()));
+            let help = help.or_else(|| Some("name files with materials before the files that use them".into()));
             self.report.error_with_help(
                 name.at,
                 format!("no modifier {} is defined before this point", name.quoted()),
@@ -282,7 +280,10 @@ impl<'a> Reader<'a> {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MAX_SHAPES && self.count > MAX_SHAPES {
-            self.report.error(at, format!("the scene has more than {MAX_SHAPES} corners and shapes, including arrays"));
+            self.report.error(
+                at,
+                format!("the scene has more than {MAX_SHAPES} vertices and shapes, including those of arrays"),
+            );
         }
         self.count <= MAX_SHAPES
     }
@@ -306,7 +307,7 @@ impl<'a> Reader<'a> {
             let span = body.at;
             self.report.unsupported_once(
                 span,
-                "the mist around the camera fills its bounding box, and attenuates all colours equally",
+                "the mist around the camera fills the bounding box of its shape, and attenuates all colours equally",
             );
             self.bodies.remove(&number);
             self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });

@@ -66,7 +66,7 @@ impl Reader<'_> {
             "polygon" => {
                 if primitive.numbers.len() < 9 || !primitive.numbers.len().is_multiple_of(3) {
                     let message = format!(
-                        "a polygon needs three numbers for each of at least 3 corners, but this one has {} numbers",
+                        "a polygon needs at least 3 vertices with 3 numbers each, but this polygon has {} numbers",
                         primitive.numbers.len()
                     );
                     return self.report.error(at, message);

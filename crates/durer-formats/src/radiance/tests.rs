@@ -151,7 +151,7 @@ fn missing_counterpart_gives_one_warning_with_position() {
     for (text, expected) in [
         (
             "void antimatter m 1 void 0 0",
-            "1:6 warning `antimatter` has no counterpart: it is left out and removes nothing",
+            "1:6 warning `antimatter` has no counterpart: the `antimatter` is left out and removes nothing",
         ),
         (
             "void colortext t 2 helvet.fnt x 0 15 0 0 0 1 0 0 0 1 0 1 1 1 .5 .5 .5 t plastic m 0 0 5 .8 .8 .8 0 0",
@@ -185,14 +185,15 @@ fn errors_have_positions() {
         ("void plastic m 0 0 5 1 1", "1:1 error the file ends within this primitive"),
         ("void plastic m 0 0 99999999999 1", "1:1 error the file ends within this primitive"),
         ("void plastic m 0 0 -1", "1:20 error expected a whole number of 0 or more, found `-1`"),
-        ("void plastic m 0 2 1 2 0", "1:18 error primitives have no integer arguments: this must be 0"),
+        ("void plastic m 0 2 1 2 0", "1:18 error the number of integer arguments of a primitive must be 0"),
         (
             "m sphere s 0 0 4 0 0 0 1",
-            "1:1 error no modifier `m` is defined before this point (files with materials must precede the files that use them)",
+            "1:1 error no modifier `m` is defined before this point (name files with materials before the files that \
+             use them)",
         ),
         (
             "void polygon p 0 0 6 0 0 0 1 1 1",
-            "1:6 error a polygon needs three numbers for each of at least 3 corners, but this one has 6 numbers",
+            "1:6 error a polygon needs at least 3 vertices with 3 numbers each, but this polygon has 6 numbers",
         ),
         ("!xform -t 1 2 missing.rad", "1:15 error expected a number, found `missing.rad`"),
         ("!xform missing.rad", "1:8 error the file `missing.rad` does not exist"),
@@ -211,7 +212,7 @@ fn errors_have_positions() {
         assert_eq!(found[0], format!("scene.rad:{expected}"), "{text}");
     }
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
-    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 levels deep: does one include itself?"]);
+    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 levels deep, or a file includes itself"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
     let help = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");
@@ -262,7 +263,8 @@ fn rif_reads_files_and_views() {
         ("scene s.rad", "x.rif:1:1 error a line must have the form `VARIABLE = values`"),
         (
             "OCTREE = a.oct",
-            "x.rif:1:1 error this file names no scene (octrees are not supported: name their source with `scene = FILE.rad`)",
+            "x.rif:1:1 error this file names no scene (octrees are not supported: name the source file of the octree \
+             with `scene = FILE.rad`)",
         ),
     ] {
         let (scene, found) = read_in(Path::new("/nonexistent"), "x.rif", line);

@@ -108,7 +108,7 @@ impl View {
                         _ => self.up = v,
                     }
                     if name != "p" && v.try_normalize().is_none() {
-                        report.error(option.at, "a direction must not be 0");
+                        report.error(option.at, "a direction must not be 0 0 0");
                     }
                 }
                 "h" | "v" | "s" | "l" | "o" | "a" => {
@@ -120,7 +120,10 @@ impl View {
                         "l" => self.shift[1] = value,
                         "o" => self.near = value,
                         _ if value != 0.0 => {
-                            report.unsupported_once(option.at, "the aft clipping plane has no counterpart");
+                            report.unsupported_once(
+                                option.at,
+                                "the aft clipping plane has no counterpart: it is ignored",
+                            );
                         }
                         _ => {}
                     }
@@ -149,10 +152,13 @@ impl View {
         };
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
-            return report.error(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
+            return report.error(
+                self.at,
+                "the sizes of a view (-vh, -vv) must be more than 0 and within the range of the type of view",
+            );
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
-            return report.error(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
+            return report.error(self.at, "the up vector (-vu) must not be parallel to the viewing direction (-vd)");
         }
         let tan = |degrees: f64| fp::tan_f64(half(degrees));
         let sides = match self.kind {
@@ -208,7 +214,7 @@ impl View {
             .into(),
             kind => {
                 if across != upwards {
-                    report.unsupported_once(self.at, "a fisheye view shows the full disc: its picture is square");
+                    report.unsupported_once(self.at, "a fisheye view shows the full disc, so its picture is square");
                 }
                 let projection = match kind {
                     'h' => FisheyeProjection::Orthographic,

@@ -3,7 +3,7 @@
 
 use super::Builder;
 use crate::number::{parse_f32, report_number};
-use crate::report::{Report, count_text, quoted};
+use crate::report::{Report, quoted};
 use durer_scene::math::Vec3;
 use std::ops::Range;
 
@@ -53,7 +53,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
     // An invalid number has already been reported.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {
-        report.error(at, format!("a facet needs 3 corners, found {}", count_text(corners.len(), "corner", "corners")));
+        report.error(at, format!("a facet needs 3 vertices, found {}", corners.len()));
     }
     corners.clear();
 }

@@ -69,7 +69,7 @@ impl SceneMaker<'_> {
             return cached.clone();
         }
         if self.models.len() >= MAX_PARTS {
-            self.report.error(at, format!("more than {MAX_PARTS} parts in an archive"));
+            self.report.error(at, format!("the archive has more than {MAX_PARTS} parts"));
             return None;
         }
         let model = parser::read(&mut self.package, part, at, self.report).map(Rc::new);
@@ -109,7 +109,7 @@ impl SceneMaker<'_> {
         if depth > MAX_DEPTH {
             self.report.error(
                 place.at,
-                format!("objects are nested more than {MAX_DEPTH} levels deep: does one contain itself?"),
+                format!("objects are nested more than {MAX_DEPTH} levels deep, or an object contains itself"),
             );
             return None;
         }

@@ -2,6 +2,7 @@
 
 use super::model::{Mesh, Property};
 use super::parser::{ErrorReported, Parser};
+use crate::report::range_text;
 use crate::xml::Tag;
 use durer_scene::math::Vec3;
 
@@ -44,8 +45,8 @@ impl Parser<'_, '_> {
         let number = self.integer(tag, name)?;
         if number as usize >= count {
             let at = tag.get(name).map_or(tag.at, |attribute| attribute.at);
-            self.report
-                .error(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
+            let has = range_text(count, "vertex", "vertices");
+            self.report.error(at, format!("vertex {number} does not exist: the mesh has {has}"));
             return None;
         }
         Some(number)
@@ -78,7 +79,7 @@ impl Parser<'_, '_> {
         let p1 = self.optional_number(tag, "p1")?;
         let Some(pid) = self.optional_number(tag, "pid").or(default.map(|default| default.0)) else {
             let at = tag.get("p1").map_or(tag.at, |attribute| attribute.at);
-            self.report.error(at, "`p1` needs a `pid` on the triangle or on its object");
+            self.report.error(at, "`p1` needs a `pid` of the triangle or of its object");
             return None;
         };
         let Some(count) = self.model.count(pid) else {
@@ -89,10 +90,8 @@ impl Parser<'_, '_> {
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];
         let corners = corners.map(|corner| corner.unwrap_or(p1));
         if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= count) {
-            self.report.error(
-                tag.at,
-                format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"),
-            );
+            let has = range_text(count, "property", "properties");
+            self.report.error(tag.at, format!("property {wrong} does not exist: the list {pid} has {has}"));
             return None;
         }
         Some((pid, corners))

@@ -126,7 +126,7 @@ impl<'x> Parser<'_, 'x> {
         let earlier = self.model.objects.get(&id).map(|earlier| earlier.1);
         if let Some(first) = earlier.or(self.model.properties.get(&id).map(|earlier| earlier.at)) {
             let error = Diagnostic::error(format!("two resources have the id {id}")).code("bad-value").at(tag.at);
-            self.report.push(error.related(first, "the first is here"));
+            self.report.push(error.related(first, "the first one is here"));
             return None;
         }
         Some(id)

@@ -149,7 +149,10 @@ fn colours_mixtures_and_pictures() {
 fn errors_have_positions() {
     let usual = || model("", "", [""; 4], ITEM);
     for (text, expected) in [
-        (usual().replace("v3='1'", "v3='9'"), "a.model:1:239 Error vertex 9 does not exist: there are 4 vertices"),
+        (
+            usual().replace("v3='1'", "v3='9'"),
+            "a.model:1:239 Error vertex 9 does not exist: the mesh has only the vertices 0 to 3",
+        ),
         (usual().replace("x='1'", "x='one'"), "expected a number, found `one`"),
         (usual().replace("centimeter", "cm"), "Error unknown unit `cm`"),
         (usual().replace("objectid='1'", "objectid='3'"), "Error object 3 does not exist"),

@@ -316,7 +316,10 @@ fn obj_is_split_by_material_and_reads_mtl() {
     );
     fs::write(folder.path().join("a b.ppm"), b"P6 1 1 255\n\xff\xff\xff").unwrap();
     let (scene, found) = read(folder.path(), "m.obj", &LoadOptions::default());
-    assert!(found[0].starts_with("no-material: no material file has `gone`") && found.len() == 1, "{found:?}");
+    assert!(
+        found[0].starts_with("no-material: no material file defines the material `gone`") && found.len() == 1,
+        "{found:?}"
+    );
     let scene = scene.unwrap();
     // There are three meshes, in the order of the first triangle of each material, followed by the
     // ground.

@@ -109,7 +109,7 @@ fn distinctive_words_decide_the_guess() {
         &|_| false,
     )
     .note();
-    assert_eq!(note.message, "read as f12a5: `refractionIndex` is a word of f12a5");
+    assert_eq!(note.message, "the scene is read as f12a5: `refractionIndex` is a word of f12a5");
     let hint = Hint { set: Dialect::F16 as u8, reason: "the output is a PNG file".into(), weak: false };
     let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
     assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));

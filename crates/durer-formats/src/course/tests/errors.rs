@@ -72,13 +72,15 @@ fn unknown_words() {
     );
     one_of_nodes(
         "Scene { Component<Object> { radius 1 type sphere } }",
-        "1:29 error: `Component<Object>` must begin with its `type` [radius] (types are sphere, plane, triangle, mesh, Grid)",
+        "1:29 error: `Component<Object>` must begin with its `type` [radius] (known types are sphere, plane, \
+         triangle, mesh, Grid)",
     );
 }
 
 #[test]
 fn byte_order_mark_takes_no_column_and_control_bytes_are_escaped() {
-    let help = "(known here: PerspectiveCamera, OrthographicCamera, Background, Lights, Materials, Group)";
+    let help =
+        "(the words allowed here are PerspectiveCamera, OrthographicCamera, Background, Lights, Materials, Group)";
     let found = |text: &str| findings(text, Dialect::F04);
     assert_eq!(
         found("\u{feff}Foo { }\n Foo { }"),
@@ -101,20 +103,25 @@ fn byte_order_mark_takes_no_column_and_control_bytes_are_escaped() {
 fn words_in_the_wrong_place() {
     one(
         "Sphere { center 0 0 0 radius 1 }",
-        "1:1 error: unknown word `Sphere` at the top of a scene [Sphere] (it belongs in a `Group`)",
+        "1:1 error: unknown word `Sphere` at the top of a scene [Sphere] (`Sphere` belongs in a `Group` block)",
     );
     one(
         "PointLight { position 0 0 0 color 1 1 1 }",
-        "1:1 error: unknown word `PointLight` at the top of a scene [PointLight] (it belongs in a `Lights`)",
+        "1:1 error: unknown word `PointLight` at the top of a scene [PointLight] (`PointLight` belongs in a `Lights` \
+         block)",
     );
     in_group(
         "Translate 1 2 3",
-        "2:1 error: unknown word `Translate` among objects [Translate] (it belongs in a `Transform`)",
+        "2:1 error: unknown word `Translate` among objects [Translate] (`Translate` belongs in a `Transform` block)",
     );
-    one("Scene { Node { } }", "1:1 error: unknown word `Scene` at the top of a scene [Scene] (it is a word of f23)");
+    one(
+        "Scene { Node { } }",
+        "1:1 error: unknown word `Scene` at the top of a scene [Scene] (`Scene` is a word of f23)",
+    );
     one_of_nodes(
         "Group { numObjects 0 }",
-        "1:1 error: unknown word `Group` at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer; in f23 it is `Node`)",
+        "1:1 error: unknown word `Group` at the top of a scene [Group] (`Group` is a word of f03, f04, f12a4, f12a5, \
+         f16, durer; write `Node` in f23)",
     );
 }
 
@@ -144,7 +151,8 @@ fn fields_and_values() {
     );
     in_group(
         "Sphere { center 0 0 0 radius 1,5 }",
-        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (use a decimal point, and only spaces between numbers)",
+        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (write decimals with a point, and separate \
+         numbers with spaces only)",
     );
     in_group(
         "Sphere { center 1, 2, 3 radius 1 }",
@@ -164,15 +172,16 @@ fn fields_and_values() {
 fn surplus_values() {
     in_group(
         "Sphere { center 0 0 0 4 radius 1 }",
-        "2:23 error: unexpected number `4` in `Sphere` [4] (its fields are center, radius)",
+        "2:23 error: unexpected number `4` in `Sphere` [4] (`Sphere` has the fields center, radius)",
     );
     in_group(
         "TriangleMesh { obj_file my cube.obj }",
-        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path ends at the first space)",
+        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path cannot contain spaces)",
     );
     one(
         "Lights { numLights 0 0 }",
-        "1:22 error: unexpected number `0` among lights [0] (known here: DirectionalLight, PointLight, numLights)",
+        "1:22 error: unexpected number `0` among lights [0] (the words allowed here are DirectionalLight, PointLight, \
+         numLights)",
     );
 }
 
@@ -213,7 +222,8 @@ fn counts_and_indices() {
     );
     one(
         "Materials { Checkerboard { materialIndex 0 materialIndex 1 } Material { } }",
-        "1:13 error: material 0 may use only earlier materials, but 0 is not before 0 [Checkerboard] (materials are numbered from 0, in file order)",
+        "1:13 error: material 0 may use only earlier materials, not material 0 [Checkerboard] (materials are \
+         numbered from 0, in file order)",
     );
     in_group(
         "MaterialIndex 7",
@@ -230,11 +240,12 @@ fn transforms() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     in_group(
         &format!("Transform {{ MaterialIndex 0 {ball} }}"),
-        "2:13 error: `MaterialIndex` is not allowed in a `Transform` [MaterialIndex] (write it before the `Transform`)",
+        "2:13 error: `MaterialIndex` is not allowed in a `Transform` [MaterialIndex] (write `MaterialIndex` before \
+         the `Transform`)",
     );
     in_group(
         &format!("Transform {{ {ball} {ball} {ball} }}"),
-        "2:46 error: a `Transform` has exactly one object [Sphere] (put several objects into a `Group`)",
+        "2:46 error: a `Transform` can contain only one object [Sphere] (put several objects into a `Group`)",
     );
     in_group(
         "Transform { Scale 1 1 1 }",
@@ -242,19 +253,21 @@ fn transforms() {
     );
     in_group(
         &format!("Transform {{ {ball} XRotate 3 YRotate 3 }}"),
-        "2:46 error: a transform's matrices come before its object [XRotate]",
+        "2:46 error: the matrices of a `Transform` must come before its object [XRotate]",
     );
     for scale in ["Scale -1 0 1", "Scale 0 0 0", "UniformScale 0"] {
         in_group(
             &format!("Transform {{ {scale} {ball} }}"),
             &format!(
-                "2:13 error: a scale by 0 flattens space and has no inverse [{scale}] (use a scale of 1 along axes that keep their size)"
+                "2:13 error: a scale factor of 0 flattens space and has no inverse [{scale}] (use a factor of 1 along \
+                 axes that keep their size)"
             ),
         );
     }
     in_group(
         &format!("Transform {{ Rotate {{ 0 0 0 45 }} {ball} }}"),
-        "2:13 error: an axis of 0 0 0 has no direction [Rotate { 0 0 0 45 }] (write the axis first, then the angle)",
+        "2:13 error: the axis of a rotation must not be 0 0 0 [Rotate { 0 0 0 45 }] (write the axis first, then the \
+         angle)",
     );
     in_group(
         &format!("Transform {{ Rotate 0 1 0 45 {ball} }}"),
@@ -270,7 +283,8 @@ fn transforms() {
     );
     one_of_nodes(
         "Scene { Node { Transform { scale 1 0 1 } } }",
-        "1:28 error: a scale by 0 flattens space and has no inverse [scale 1 0 1] (use a scale of 1 along axes that keep their size)",
+        "1:28 error: a scale factor of 0 flattens space and has no inverse [scale 1 0 1] (use a factor of 1 along \
+         axes that keep their size)",
     );
     // A scale by a small factor is not a scale by 0.
     assert_eq!(findings(&format!("Group {{ Transform {{ Scale 1e-30 1e-30 1 {ball} }} }}"), Dialect::F04), [""; 0]);
@@ -280,7 +294,7 @@ fn transforms() {
 fn braces() {
     one("Group {\n numObjects 0", "2:14 error: the file ends inside `Group` []");
     one("Group { Transform { Sphere { center 0 0", "1:40 error: `center` needs number 3 of 3, but the file ends []");
-    one("}\n", "1:1 error: this `}` has no matching `{` [}] (is there an extra `}` before it?)");
+    one("}\n", "1:1 error: this `}` has no matching `{` [}] (look for an extra `}` further up)");
     one("{ Sphere { } }", "1:1 error: `{` without a keyword [{]");
     one("Group { { } }", "1:9 error: `{` without a keyword in `Group` [{]");
     one(
@@ -290,10 +304,10 @@ fn braces() {
     one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` is not allowed in `Group` [Lights]");
     one(
         "Group { numObjects 2 Sphere { center 0 0 0 radius 1 }\n}\nPlane { normal 0 1 0 offset 0 } }",
-        "2:1 error: this `}` ends `Group` after 1 of its elements, but more follow [}]",
+        "2:1 error: this `}` ends `Group` after 1 of its elements, but more elements follow [}]",
     );
     one_of_nodes("Scene { Node {", "1:15 error: the file ends inside `Node` []");
-    one_of_nodes("}", "1:1 error: this `}` has no matching `{` [}] (is there an extra `}` before it?)");
+    one_of_nodes("}", "1:1 error: this `}` has no matching `{` [}] (look for an extra `}` further up)");
 }
 
 #[test]
@@ -301,25 +315,27 @@ fn repeated_and_foreign_words_give_one_warning() {
     one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last one is used [color]");
     one(
         "Group { numObjects 0 } Group { numObjects 0 }",
-        "1:24 warning: this is another `Group`: only the last is used [Group]",
+        "1:24 warning: the scene has more than one `Group`; only the last one is used [Group]",
     );
     one(
         "Materials { Material { shininess 1 } Material { shininess 2 } }",
-        "1:24 warning: `shininess` is not a word of f04, but of f12a4, f12a5, f16, f23, durer [shininess] (in f04 it is `exponent`)",
+        "1:24 warning: `shininess` is not a word of f04, but of f12a4, f12a5, f16, f23, durer [shininess] (write \
+         `exponent` in f04)",
     );
     one(
         "Group { num_objects 0 }",
-        "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects] (in f04 it is `numObjects`)",
+        "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects] (write `numObjects` in f04)",
     );
     let twice = "Scene { Node { Transform { scale 2 2 2 } Transform { translate 1 0 0 } Component<Object> { type sphere radius 1 } } }";
     one_of_nodes(
         twice,
-        "1:42 warning: a node has one transform; the last one is used [Transform] (nested nodes have one each)",
+        "1:42 warning: a node can have only one transform; the last one is used [Transform] (use nested nodes to \
+         combine several transforms)",
     );
     let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
     let ObjectKind::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
     assert_eq!(ops[..], [MatrixOp::Translate(Vec3::X)]);
-    one("Group { } // no", "1:11 warning: comments begin with `#`; this one is ignored anyway [// no]");
+    one("Group { } // no", "1:11 warning: comments begin with `#`, but this comment with `//` is ignored too [// no]");
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
     assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));
 }
@@ -339,5 +355,5 @@ fn web_colour_is_reported_at_its_value() {
 fn repeated_count_is_reported() {
     let text = "Group { numObjects 1 numObjects 1 Sphere { center 0 0 0 radius 1 } }";
     let messages = findings(text, Dialect::Durer).join("\n");
-    assert!(messages.contains("`numObjects` is given twice; the last counts"), "{messages}");
+    assert!(messages.contains("`numObjects` is given twice; the last one is used"), "{messages}");
 }

@@ -81,7 +81,10 @@ fn wrong_names_are_errors() {
             "define a Group { use a }",
             "3:22 error: nothing is defined as `a` before this point [a] (write `define NAME` and an object first, outside the object that uses it)",
         ),
-        ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
+        (
+            "include light.txt",
+            "3:1 error: a scene that is not stored in a folder cannot include files [include light.txt]",
+        ),
         ("include", "3:1 error: `include` needs the name of a file [include] (for example `include light.txt`)"),
     ] {
         assert_eq!(refused(text)[0], expected, "{text}");

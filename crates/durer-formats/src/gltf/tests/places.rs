@@ -37,7 +37,10 @@ const PLAIN: &str = r#""nodes":[{"mesh":0}]"#;
 fn glb_findings_have_positions_in_the_json() {
     let wrong = "{\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[{\"mesh\":3}]}";
     for (name, bytes) in [("a.gltf", wrong.as_bytes().to_vec()), ("a.glb", glb(wrong))] {
-        assert_eq!(messages(name, &bytes), [format!("{name}:2:18 error /nodes/0/mesh: unresolved reference: 3")]);
+        assert_eq!(
+            messages(name, &bytes),
+            [format!("{name}:2:18 error /nodes/0/mesh: index 3 refers to an item that does not exist")]
+        );
     }
     let broken = messages("a.glb", &glb("{\"asset\":\n  }"));
     assert!(broken.len() == 1 && broken[0].starts_with("a.glb:2:3 error invalid JSON"), "{broken:?}");
@@ -56,20 +59,22 @@ fn warnings_name_the_part_of_the_file() {
     };
     let text = corners(r#"},"mode":0"#, PLAIN).replace(r#"{"primitives""#, r#"{"name":"Dots","primitives""#);
     let expected = format!(
-        "{} warning /meshes/0/primitives/0: points and lines of mesh `Dots` have no surface: small balls and thin sticks are shown",
+        "{} warning /meshes/0/primitives/0: points and lines of mesh `Dots` have no surface, so small balls and thin \
+         sticks are shown",
         line(&text, r#"{"attributes""#)
     );
     assert_eq!(messages("a.gltf", text.as_bytes()), [expected]);
 
     let text = corners(r#","COLOR_1":0},"indices":1"#, PLAIN);
-    let expected = "additional attribute sets, here of mesh, are left out";
+    let expected = "additional attribute sets, for example of mesh, are left out";
     let place = line(&text, r#"0},"indices""#);
     let expected = format!("{place} warning /meshes/0/primitives/0/attributes/COLOR_1: {expected}");
     assert_eq!(messages("a.gltf", text.as_bytes()), [expected]);
 
     let nodes = r#""nodes":[{"children":[1],"scale":[1,0,1]},{"mesh":0,"name":"Gone","scale":[0,2,1]}]"#;
     let text = corners(r#"},"indices":1"#, nodes);
-    let expected = "node `Gone` is left out: its transform flattens it to a line or point, or overflows";
+    let expected = "node `Gone` is left out, because its transform flattens its mesh to a line or point, or has numbers \
+                    that are too large";
     let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found[0], format!("{} warning /nodes/1: {expected}", line(&text, r#"{"mesh":0,"name""#)));
 
@@ -77,7 +82,7 @@ fn warnings_name_the_part_of_the_file() {
         {"baseColorTexture":{"index":0,"texCoord":2}}}],"nodes":[{"mesh":0}]"#;
     let text = corners(r#"},"indices":1,"material":0"#, material);
     let expected =
-        "this texture of material `Wood` uses TEXCOORD_2, but only two sets are supported: TEXCOORD_0 is used";
+        "this texture of material `Wood` uses TEXCOORD_2, but only two sets are supported; TEXCOORD_0 is used";
     let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
     let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
@@ -95,10 +100,11 @@ fn animations_not_shown_are_noted() {
         let text = corners(r#"},"indices":1"#, &format!(r#""animations":[{}],{PLAIN}"#, all.join(",")));
         messages("a.gltf", text.as_bytes()).remove(0)
     };
-    let expected = "the file has 1 animation and is shown at rest: `--at 0` shows its first moment";
-    assert!(animated(&["Walk"]).ends_with(&format!("note /animations: {expected}")), "{}", animated(&["Walk"]));
     let expected =
-        "the file has 2 animations and is shown at rest: `--at 0` shows the first moment of the first, `Walk`";
+        "the file has 1 animation and is shown at rest; use `--at 0` to show the first moment of the animation";
+    assert!(animated(&["Walk"]).ends_with(&format!("note /animations: {expected}")), "{}", animated(&["Walk"]));
+    let expected = "the file has 2 animations and is shown at rest; use `--at 0` to show the first moment of the first \
+                    animation, `Walk`";
     assert!(animated(&["Walk", "Run"]).ends_with(expected));
 }
 

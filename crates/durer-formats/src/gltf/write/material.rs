@@ -37,7 +37,7 @@ impl Writer<'_> {
                 Some(self.layers(&matte, has_alpha))
             }
             Material::Solid(solid, _) => {
-                self.warn_lost("glTF has no patterns of two materials: the first is written");
+                self.warn_lost("glTF has no patterns of two materials: the first material is written");
                 let first = solid.materials()[0];
                 // A pattern can refer only to earlier materials, so the recursion ends.
                 if first < number { self.material(first, has_alpha) } else { None }

@@ -190,7 +190,7 @@ impl Writer<'_> {
                         lens.angle
                     }
                     _ => {
-                        self.warn_lost("glTF has no such camera: a perspective camera is written");
+                        self.warn_lost("glTF has no camera of this kind: a perspective camera is written");
                         60.0
                     }
                 };
@@ -212,7 +212,9 @@ impl Writer<'_> {
         let (mut written, center, direction) = match light {
             Light::Point(point) => {
                 if point.attenuation != Some(Vec3::Z) {
-                    self.warn_lost("glTF lights fall off with the squared distance: other attenuation is left out");
+                    self.warn_lost(
+                        "glTF lights always fall off with the squared distance: other attenuation is left out",
+                    );
                 }
                 (json!({ "type": "point" }), point.position, Vec3::NEG_Z)
             }

@@ -266,7 +266,7 @@ fn rotation_axis_not_of_length_1_is_reported() {
         let rotate = format!("<transform name='to_world'><rotate {axis} angle='40'/></transform>");
         read(&format!("<scene version='{version}'><shape type='sphere'>{rotate}</shape></scene>")).1
     };
-    assert!(messages("3.0.0", "x='1' y='2' z='.5'")[0].contains("not of length 1"));
+    assert!(messages("3.0.0", "x='1' y='2' z='.5'")[0].contains("does not have length 1"));
     assert!(messages("0.6.0", "x='1' y='2' z='.5'").is_empty() && messages("3.0.0", "x='.6' y='.8'").is_empty());
 }
 
@@ -566,7 +566,11 @@ fn curve_files_with_hair_become_tubes() {
         assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
     }
     for (file, kind, wanted) in [
-        ("short.txt", "bsplinecurve", "short.txt:3:1 error a curve that ends here has 2 points: it needs 4"),
+        (
+            "short.txt",
+            "bsplinecurve",
+            "short.txt:3:1 error the curve that ends here has 2 points, but needs at least 4 points",
+        ),
         (
             "bad.txt",
             "linearcurve",

@@ -64,7 +64,7 @@ fn tf_is_the_transmission_of_physical_materials() {
     assert_eq!(of("Tf 0 0 0\nillum 2\nd 1").transmission_weight, 0.0);
     let (layers, messages) = read("illum 2\nd 0.5\nTf 1 0 0");
     assert_eq!((layers.transmission_weight, layers.opacity), (0.0, 0.5));
-    assert_eq!(messages, ["m.mtl:4:1 note statements without a counterpart are left out: Tf"]);
+    assert_eq!(messages, ["m.mtl:4:1 note some statements have no counterpart and are left out: Tf"]);
 }
 
 #[test]
@@ -76,9 +76,9 @@ fn findings_have_line_and_column() {
         messages,
         [
             "m.mtl:4:5 warning material `a`: `Ns` needs a number, found `much`",
-            "m.mtl:5:19 warning material `a`: picture `no \\\"such.png` not found (map_Kd)",
+            "m.mtl:5:19 warning material `a`: the picture `no \\\"such.png` of `map_Kd` was not found",
             "m.mtl:7:1 warning material `a`: `d` needs a number",
-            "m.mtl:2:1 note statements without a counterpart are left out: anisor, sharpness",
+            "m.mtl:2:1 note some statements have no counterpart and are left out: anisor, sharpness",
         ]
     );
 }

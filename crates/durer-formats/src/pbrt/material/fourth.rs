@@ -141,7 +141,7 @@ impl Reader<'_> {
                     let (color, picture) = self.color_or_texture(params, name, 0.25);
                     if picture.is_some() {
                         let what =
-                            "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
+                            "diffuse transmission with a picture has no counterpart: `scale` is used as the colour";
                         self.report.unsupported_once(params.span(name), what);
                     }
                     scale * color
@@ -183,7 +183,9 @@ impl Reader<'_> {
             other => {
                 let old = V3_MATERIALS.iter().find(|row| row.0 == other);
                 let help = match old {
-                    Some((_, now)) => Some(format!("this is a pbrt-v3 material; the nearest in pbrt-v4 is `{now}`")),
+                    Some((_, now)) => {
+                        Some(format!("`{other}` is a pbrt-v3 material; the nearest material in pbrt-v4 is `{now}`"))
+                    }
                     None => suggest(other, MATERIALS),
                 };
                 self.no_material(other, at, help, old.is_some());

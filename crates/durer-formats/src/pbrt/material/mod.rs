@@ -112,7 +112,7 @@ impl Reader<'_> {
         let language = if self.language == Language::V3 { "pbrt-v3" } else { "pbrt-v4" };
         let error = Diagnostic::error(format!("unknown material `{name}` in {language}")).code("bad-value").at(at);
         let error = match self.decided_by.filter(|_| other) {
-            Some(by) => error.related(by, &format!("this word makes the file {language}")),
+            Some(by) => error.related(by, &format!("this word shows that the file is {language}")),
             None => error,
         };
         self.report.push(Diagnostic { help, ..error });
@@ -223,7 +223,7 @@ impl Reader<'_> {
                     (Some(only), None) | (None, Some(only)) => {
                         self.report.unsupported_once(
                             at,
-                            "a mix with an invisible material has no counterpart: only the other is used",
+                            "a mix with an invisible material has no counterpart: only the other material is used",
                         );
                         Some(only)
                     }
@@ -250,7 +250,7 @@ impl Reader<'_> {
             match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
                 true => self.report.unsupported_once(
                     light.at,
-                    "two-sided emission of glass has no counterpart: it emits outwards only",
+                    "two-sided emission of glass has no counterpart: the glass emits outwards only",
                 ),
                 false => m.walls = Walls::Thin,
             }

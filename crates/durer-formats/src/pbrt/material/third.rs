@@ -129,7 +129,8 @@ impl Reader<'_> {
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);
-                let help = if is_new { Some("this is a pbrt-v4 material".into()) } else { suggest(other, MATERIALS) };
+                let help =
+                    if is_new { Some(format!("`{other}` is a pbrt-v4 material")) } else { suggest(other, MATERIALS) };
                 self.no_material(other, at, help, is_new);
                 return MaterialDef::Interface;
             }
@@ -204,7 +205,8 @@ impl Reader<'_> {
         // The microfacets also transmit light. In Dürer, the microfacets of a thin sheet do not
         // refract it.
         if (down * specular).max_element() > 0.0 {
-            let what = "glossy transmission of `translucent` is not refracted here";
+            let what =
+                "refraction by the glossy transmission of `translucent` has no counterpart: the light is not refracted";
             self.report.unsupported_once(params.at, what);
             let mut through = super::matte(Vec3::ZERO);
             (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);

@@ -432,8 +432,11 @@ fn density_grids_follow_transform_and_end_in_zero() {
     }
     for (grid, expected) in [
         ("", "error this medium needs a `density`"),
-        ("\"float density\" [ 1 2 ]", "error `density` needs 1 x 1 x 1 numbers, by `nx`, `ny` and `nz`: found 2"),
-        ("\"float density\" [ -1 ]", "error density 1 is -1: it must be 0 or more"),
+        (
+            "\"float density\" [ 1 2 ]",
+            "error `density` needs 1 x 1 x 1 numbers, as given by `nx`, `ny` and `nz`, but has 2",
+        ),
+        ("\"float density\" [ -1 ]", "error density number 1 is -1, but must be 0 or more"),
         ("\"integer nx\" -1 \"float density\" [ 1 ]", "error `density` needs -1 x 1 x 1 numbers"),
     ] {
         let (_, messages) = read(&format!(

@@ -206,18 +206,21 @@ fn pictured_lights_follow_their_pictures() {
 fn errors_and_warnings_of_pbrt_v3() {
     for (text, wanted) in [
         ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)"),
-        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this is a pbrt-v4 material"),
+        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (`conductor` is a pbrt-v4 material"),
         ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this point"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
         ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error the file `no.exr` does not exist"),
         ("LightSource \"projection\" \"float fov\" 180", "error a field of view must be more than 0 and less than 180"),
-        ("Texture \"t\" \"colour\" \"constant\"", "error textures are `float` or `spectrum`, not `colour`"),
+        (
+            "Texture \"t\" \"colour\" \"constant\"",
+            "error a texture must be of type `float` or `spectrum`, not `colour`",
+        ),
         (
             "Material \"matte\" \"spectrum Kd\" \"no.spd\"",
             "error cannot read the spectrum: the file `no.spd` does not exist",
         ),
         ("Shape \"curve\"", "error a curve needs points"),
-        ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error 2 points do not make a curve of degree 3"),
+        ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error a Bézier curve of degree 3 cannot have 2 points"),
         (
             "Shape \"curve\" \"string type\" \"ribbon\" \"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]",
             "error a ribbon of 1 segments needs 2 normals `N`, found 0",
@@ -247,12 +250,15 @@ fn errors_and_warnings_of_pbrt_v3() {
             "Material \"plastic\" \"float uroughness\" 1",
             "warning the material `plastic` has no parameter `uroughness`: it is ignored (did you mean `roughness`?)",
         ),
-        ("LightSource \"point\" \"float scale\" 3", "warning `scale` of a light is a colour in pbrt-v3: this number"),
+        (
+            "LightSource \"point\" \"float scale\" 3",
+            "warning the `scale` of a light must be a colour in pbrt-v3: this number",
+        ),
         ("LightSource \"point\" \"float power\" 3", "warning this light has no parameter `power`"),
         ("Material \"fourier\" \"string bsdffile\" \"a.bsdf\"", "warning measured materials have no counterpart"),
         ("Material \"disney\" \"float flatness\" 1", "warning `flatness` has no counterpart"),
         ("Material \"uber\" \"rgb opacity\" [ 1 0 0 ]", "warning a coloured `opacity` has no counterpart"),
-        ("Material \"translucent\"", "warning glossy transmission of `translucent` is not refracted"),
+        ("Material \"translucent\"", "warning refraction by the glossy transmission of `translucent`"),
         (
             "Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]",
             "warning curves of type `flat` have no counterpart",
@@ -263,7 +269,7 @@ fn errors_and_warnings_of_pbrt_v3() {
         ),
         (
             "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"string preset\" \"Skin7\"",
-            "warning the medium `Skin7` is unknown",
+            "warning unknown medium preset `Skin7`",
         ),
     ] {
         let (scene, messages) = read(&format!("{HEAD}{text} Shape \"sphere\""));

@@ -239,8 +239,8 @@ fn rough_plastic_has_the_given_reflectance_in_all_directions() {
 #[test]
 fn mirror_uses_its_substitute_and_void_is_transparent() {
     let other = "void plastic blue 0 0 5 0 0 .7 0 0\n";
-    let what =
-        "scene.rad:2:6 warning `mirror` has no counterpart: its substitute is used, which does not mirror lights";
+    let what = "scene.rad:2:6 warning `mirror` has no counterpart: its substitute material is used, which does not \
+                mirror lights";
     let (scene, messages) = read(&format!("{other}void mirror m 1 blue 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
     assert_eq!(
         (first(&scene.unwrap()).base_color, messages.as_slice()),
