@@ -127,7 +127,8 @@ impl Pictures<'_> {
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
-    /// Joins two pictures that have the same mapping, or a picture with itself, texel by texel.
+    /// Combines two pictures that have the same mapping, texel by texel. Both can be the same
+    /// picture.
     /// Returns the colour picture and the factor for its values, or `None` if the mappings differ.
     pub fn joined(
         &self,

@@ -11,7 +11,8 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::wasm32::*;
 
-/// The SIMD level for `simd128`. The type exists only if the compilation target supports it.
+/// Marker type for kernels that use the `simd128` instructions of WebAssembly. The type exists only
+/// if the compilation target supports them.
 #[derive(Clone, Copy)]
 pub struct Simd128;
 

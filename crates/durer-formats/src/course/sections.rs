@@ -320,7 +320,7 @@ impl Reader<'_, '_> {
             });
         } else if !first {
             let error = Diagnostic::error("`preset` must come first in its block").at(word);
-            self.error(error.help("`preset` sets all fields, so write the fields with other values after it"));
+            self.error(error.help("write `preset` before the other fields, because it sets all of them"));
         }
     }
 

@@ -84,7 +84,7 @@ struct Model<'a> {
     images: Vec<Option<PictureBytes>>,
     /// Picture of each texture, its mapping, and the span of the picture's name.
     textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
-    /// Pictures that materials use, by asset name.
+    /// Texture images of the materials, by asset name.
     pictures: RefCell<BTreeMap<String, TextureImage>>,
     material_count: usize,
     /// Index of the selected material variant, if the file has any variants.

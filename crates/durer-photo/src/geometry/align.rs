@@ -25,7 +25,7 @@ impl Similarity {
         self.scale * (self.rotation * point) + self.translation
     }
 
-    /// Transforms cameras and points, so that the projections stay the same.
+    /// Transforms cameras and points together, which does not change the projections.
     pub fn apply_to(&self, reconstruction: &mut Reconstruction) {
         for view in &mut reconstruction.views {
             if let Some(pose) = &mut view.pose {

@@ -78,8 +78,8 @@ impl Sampling {
     }
 }
 
-/// A render job. It contains everything that determines the pictures, except the scene. It is plain
-/// data and does not depend on the machine.
+/// Description of a render: everything that determines the pictures except the scene, such as size,
+/// sampling and integrator. It is plain data and does not depend on the machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Width of the full picture in pixels.

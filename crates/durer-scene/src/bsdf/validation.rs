@@ -239,7 +239,7 @@ impl<'a> Furnace<'a> {
     }
 }
 
-/// View of a material in a [`Furnace`], and the roughness of the material.
+/// Input of a furnace test: viewing direction, roughness, anisotropy and index of refraction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FurnaceView {
     /// Roughness.

@@ -157,9 +157,9 @@ pub trait Illuminate {
     /// File that lists the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
-    /// Converts a direction from the light to the coordinate system of its profile, where x points
-    /// to horizontal angle 0 and z out of the lower side. It is only useful for a light with a
-    /// profile.
+    /// Converts a direction from the light to the coordinate system of its profile, in which x
+    /// points to horizontal angle 0, and z points downwards from the light. It is only useful for a
+    /// light with a profile.
     fn to_profile(&self, dir: Vec3) -> Vec3;
 }
 

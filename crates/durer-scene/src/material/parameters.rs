@@ -117,7 +117,8 @@ pub enum TextureEffect {
     Color(fn(&mut Parameters, Vec3)),
 }
 
-/// Texture field of a principled material, and its effect on the parameters.
+/// Row of the table of texture fields that a `PrincipledMaterial` can have in a scene file, with
+/// the parameter that the texture changes.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureField {
     /// Name of the field.

@@ -103,7 +103,7 @@ const STEP: f32 = 10.0;
 /// Number of wavelengths.
 const ROWS: u16 = 41;
 
-/// XYZ value of a spectrum, at an arbitrary scale.
+/// XYZ value of a spectrum, on an arbitrary scale.
 pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     let row = |i| {
         let nm = FIRST + STEP * f32::from(i);
@@ -113,7 +113,7 @@ pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     (0..ROWS).map(row).sum()
 }
 
-/// Value of illuminant D65 at a wavelength, at an arbitrary scale.
+/// Value of illuminant D65 at a wavelength, on an arbitrary scale.
 fn daylight(nm: f32) -> f32 {
     observer_and_daylight(nm)[3]
 }

@@ -185,9 +185,8 @@ pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let name = scene_probe.object(number as u32);
         let diagnostic = match orthographic {
-            true => Diagnostic::note(format!("the camera looks along the {name}")).help(
-                "tilt the camera's `direction` towards the plane, which is at most a line when seen from its side",
-            ),
+            true => Diagnostic::note(format!("the camera looks along the {name}"))
+                .help("tilt the camera's `direction` towards the plane, which looks like a line when seen edge-on"),
             false => {
                 // This is the normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };

@@ -327,7 +327,7 @@ pub enum ShadowRayEnd {
     Squared,
 }
 
-/// Mistakes in shadow rays and in the light that remains in shadow.
+/// Mistakes that a student's tracer can make in shadow rays and in the ambient term.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowBugs {
     /// Shadow rays do not end at the light.
@@ -514,7 +514,7 @@ impl CameraBugs {
     }
 }
 
-/// Mistakes in converting radiance to the eight-bit values of a file.
+/// Mistake that a student's program can make when it converts radiance to eight-bit values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OutputBug {
     /// There is no mistake, so the transfer curve is correct.
