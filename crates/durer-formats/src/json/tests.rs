@@ -165,7 +165,7 @@ fn number_of_errors_and_nesting_are_limited() {
     // A material index that is out of range is reported, but the scene is still read.
     let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
     assert!(
-        scene.is_some() && messages[0].contains("material 3 does not exist: the scene has 3 materials"),
+        scene.is_some() && messages[0].contains("material 3 does not exist: the scene has only the materials 0 to 2"),
         "{messages:?}"
     );
 }

@@ -50,7 +50,7 @@ fn invalid_values_of_scenes_are_rejected() {
     let found = compiled(|scene, _, _| {
         scene.root.iter_mut().flat_map(|root| &mut root.objects).for_each(|object| object.material = Some(7));
     });
-    assert_eq!(found, ["an object has material 7, but the scene has 1, counted from 0"]);
+    assert_eq!(found, ["an object has material 7, but the scene has only material 0"]);
     let found =
         compiled(|scene, _, _| scene.camera = Some(PerspectiveCamera { angle: f32::NAN, ..Default::default() }.into()));
     assert_eq!(found, ["PerspectiveCamera: angle NaN must be finite"]);

@@ -250,7 +250,7 @@ fn inconsistent_parts_are_not_merged() {
     let other = Job { seed: 1, ..job.clone() };
     let foreign = [make(&job, 1, 2, ShardBy::Tiles), make(&other, 2, 2, ShardBy::Tiles)];
     let message = merge(&foreign).unwrap_err().to_string();
-    assert!(message.contains("`seed` is 1, expected 0"), "{message}");
+    assert!(message.contains("`seed` is 1 instead of 0"), "{message}");
     assert!(matches!(merge(&[]), Err(MergeError::NoParts)));
     let unfinished = [("x".to_string(), PartialRender::new(&world, &job, Shard::WHOLE).unwrap())];
     let message = merge(&unfinished).unwrap_err().to_string();

@@ -268,7 +268,7 @@ mod tests {
         let mut scene = Scene::builder();
         scene.add(mesh).material(material);
         let found: Vec<_> = scene.build().unwrap_err().iter().map(|d| d.message.clone()).collect();
-        let unknown = "an object has material 0, but the scene has 0, counted from 0";
+        let unknown = "an object has material 0, but the scene has no materials";
         assert_eq!(found, [unknown, "the scene has no camera", "an object uses a mesh of another builder"]);
     }
 }

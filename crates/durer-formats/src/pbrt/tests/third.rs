@@ -232,7 +232,7 @@ fn errors_and_warnings_of_pbrt_v3() {
         ("Shape \"disk\" \"float phimax\" 0", "error `phimax` must be more than 0 degrees"),
         (
             "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [ 1 2 3 ]",
-            "error `Pz` has 3 values for 2 x 2",
+            "error `Pz` has 3 values, but needs one for each of 2 x 2 points",
         ),
         ("Shape \"heightfield\" \"integer nu\" 1", "error `nu` and `nv` must be 2 or more"),
         ("Shape \"nurbs\" \"integer nu\" 2 \"integer nv\" 2", "error `uorder` must be from 2"),

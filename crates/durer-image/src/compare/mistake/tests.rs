@@ -154,7 +154,7 @@ fn shifted_samples() {
     };
     let middle = move |x: usize, y: usize| disc(x as f32 + 0.5, y as f32 + 0.5);
     let border = |i: usize| i as f32 * SIDE as f32 / (SIDE as f32 - 1.0);
-    finds("edges", "its rays pass through i / (n - 1)", &middle, &move |x, y| disc(border(x), border(y)));
+    finds("edges", "the picture's rays pass through i / (n - 1)", &middle, &move |x, y| disc(border(x), border(y)));
     finds("edges", "the reference's rays pass through i / (n - 1)", &move |x, y| disc(border(x), border(y)), &middle);
     finds("edges", "pixels to the right", &middle, &move |x, y| disc(x as f32, y as f32 + 0.5));
     let smooth = move |x: usize, y: usize| {
