@@ -149,21 +149,35 @@ impl FolderSource {
         }
         Err(match outside {
             true => SourceError::Outside { name: name.into() },
-            false => SourceError::Missing { name: name.into(), similar: None, tried: candidates },
+            false => {
+                let mut tried: Vec<PathBuf> = Vec::new();
+                for candidate in candidates {
+                    // The same folder can be in the search path twice, once with a leading `.`.
+                    if !tried.iter().any(|known| same_place(known, &candidate)) {
+                        tried.push(candidate);
+                    }
+                }
+                SourceError::Missing { name: name.into(), similar: None, tried }
+            }
         })
     }
 
-    /// Returns the name of a file in the same folder that is similar to one of the candidates.
-    /// Folders that may not be read are not searched for similar names.
+    /// Returns the name of a file in the same folder that is similar to one of the candidates. If
+    /// the folder does not exist, returns the name of a similar folder. Folders that may not be read
+    /// are not searched for similar names.
     fn similar_name(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
-            let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
+            // The part of the path that is wrong is the first one that does not exist.
+            let wrong =
+                path.ancestors().find(|part| part.parent().is_some_and(|folder| or_current(folder).is_dir()))?;
+            let folder = or_current(wrong.parent()?).canonicalize().ok().filter(|folder| self.allows(folder))?;
+            let is_fitting = |entry: &fs::DirEntry| wrong == path || entry.path().is_dir();
             let names: Vec<String> = fs::read_dir(folder)
                 .ok()?
-                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+                .filter_map(|entry| entry.ok().filter(is_fitting)?.file_name().into_string().ok())
                 .take(10_000)
                 .collect();
-            did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
+            did_you_mean(wrong.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
         })
     }
 
@@ -227,6 +241,22 @@ fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     }
     let candidate = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
     candidate.is_file().then_some(candidate)
+}
+
+/// Returns the folder, or `.` in place of an empty path.
+fn or_current(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+}
+
+/// Returns true if two paths are equal except for components `.`.
+fn same_place(a: &Path, b: &Path) -> bool {
+    let parts = |path: &'_ Path| {
+        path.components()
+            .filter(|part| *part != Component::CurDir)
+            .map(|part| part.as_os_str().to_owned())
+            .collect::<Vec<_>>()
+    };
+    parts(a) == parts(b)
 }
 
 /// Decodes percent escapes; returns the name unchanged if an escape is malformed.

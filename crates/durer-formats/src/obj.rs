@@ -124,10 +124,6 @@ struct StateChanges {
 fn read_with(bytes: &[u8], file: u32, switches: &mut StateChanges, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        report.error(0..2, "this file is UTF-16: save it as UTF-8 or ASCII text");
-        return report.finish(diagnostics, mesh);
-    }
     let parts = words::parts(bytes);
     let counts = read_vertices(bytes, &parts, &mut mesh, &mut report);
     if !report.is_full() {

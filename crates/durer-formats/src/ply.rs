@@ -4,6 +4,8 @@
 mod body;
 mod fixed;
 mod header;
+mod lines;
+mod order;
 mod rows;
 mod values;
 mod write;
@@ -15,6 +17,8 @@ use durer_diag::Diagnostics;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 use header::{Encoding, read_header};
+use lines::report_wrong_row;
+use order::report_wrong_order;
 use values::{AsciiValues, BinaryValues};
 use write::write;
 pub(super) use write::write_all_attributes;
@@ -40,13 +44,24 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
 
 fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     let header = read_header(bytes, report)?;
-    let (start, elements) = (header.body, header.elements);
+    let (start, elements) = (header.body, &header.elements);
+    if report_wrong_order(bytes, &header, report) {
+        return None;
+    }
     let mesh = match header.encoding {
-        Encoding::Ascii => RowReader::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
-        Encoding::LittleEndian => {
-            RowReader::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements)
+        Encoding::Ascii => {
+            let mut found = report.part();
+            let mesh = RowReader::new(bytes, AsciiValues::new(bytes, start), &mut found).read(elements);
+            // A wrong number of rows causes many errors, or a single error far from the cause.
+            if found.count() == 0 || !report_wrong_row(bytes, &header, report) {
+                report.join(found);
+            }
+            mesh
         }
-        Encoding::BigEndian => RowReader::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
+        Encoding::LittleEndian => {
+            RowReader::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(elements)
+        }
+        Encoding::BigEndian => RowReader::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(elements),
     };
     Some(MeshData { flat: header.flat, ..mesh? })
 }

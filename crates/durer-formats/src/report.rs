@@ -86,6 +86,12 @@ impl Report {
         self.errors >= self.max_errors
     }
 
+    /// Returns true if a diagnostic with this message and byte range has already been added.
+    pub fn contains(&self, at: &Range<usize>, message: &str) -> bool {
+        let span = self.span(at.clone());
+        self.diagnostics.iter().any(|known| known.span == Some(span) && known.message == message)
+    }
+
     /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
         self.diagnostics.len()

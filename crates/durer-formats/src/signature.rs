@@ -46,11 +46,17 @@ const LUMINAIRE: &str = "a measured luminaire (IES)";
 /// Returns an error if the signature of a file shows that the file is not in the format with these
 /// extensions.
 pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    // XML files state their encoding, and the reader of XML converts UTF-16.
+    if (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) && !extensions.contains(&"xml") {
+        // The bytes of the file cannot be shown, so the error has no position.
+        let message = format!("`{last}` is text in UTF-16, but the text must be in UTF-8");
+        return Some(Diagnostic::error(message).code("syntax").help("save the file as UTF-8 in the text editor"));
+    }
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
     if own.is_some_and(|own| extensions.contains(&own)) {
         return None;
     }
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
     let message = format!("`{last}` is {what}, according to its first bytes");
     let error = Diagnostic::error(message).code("bad-file").at(Span {
@@ -72,6 +78,19 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
 #[cfg(test)]
 mod tests {
     use super::wrong_format_error;
+
+    #[test]
+    fn utf16_is_refused_except_in_xml() {
+        for start in [b"\xff\xfe", b"\xfe\xff"] {
+            for name in ["a/b.txt", "b.obj", "b.pbrt", "b.rad", "b.stl"] {
+                let error = wrong_format_error(start, 0, name, &[&name[name.len() - 3..]]).unwrap();
+                let last = &name[name.len() - name.rsplit('/').next().unwrap().len()..];
+                assert_eq!(error.message, format!("`{last}` is text in UTF-16, but the text must be in UTF-8"));
+                assert_eq!((error.span, error.help.unwrap().contains("save the file as UTF-8")), (None, true));
+            }
+            assert!(wrong_format_error(start, 0, "b.xml", &["xml"]).is_none());
+        }
+    }
 
     #[test]
     fn file_with_wrong_extension_is_an_error() {

@@ -187,7 +187,11 @@ impl Reader<'_, '_> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
             FieldKind::Float => Value::Float(self.number(word, 1, 1)?),
-            FieldKind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
+            FieldKind::Int if word == "materialIndex" => {
+                let number = self.material_number(word)?;
+                self.index_spans.push((number, self.last_span()));
+                Value::Int(number)
+            }
             FieldKind::Int => Value::Int(self.integer(word)?),
             FieldKind::Vec3 => Value::Vec3(self.vec3(word)?),
             FieldKind::Path => {

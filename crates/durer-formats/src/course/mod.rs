@@ -81,7 +81,7 @@ fn not_text_reason(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(1 << 16)];
     let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
-        return Some("this file is UTF-16: save it as UTF-8 or ASCII text");
+        return Some("this file is UTF-16: save the file as UTF-8 or ASCII text");
     }
     // Text that was copied from a terminal can contain escape characters for colours.
     let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;

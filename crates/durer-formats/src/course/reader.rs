@@ -52,6 +52,11 @@ pub(super) struct Reader<'a, 'd> {
     pub material: Option<u32>,
     /// Uses of `MaterialIndex`, which are checked when the number of materials is known.
     pub material_uses: Vec<(u32, Span)>,
+    /// Numbers of materials in the current solid texture, with their spans.
+    pub index_spans: Vec<(u32, Span)>,
+    /// Uses of materials in solid textures: the number of the texture, the material that it uses,
+    /// and the span of that number. Textures may use only earlier materials, which prevents cycles.
+    pub solid_uses: Vec<(u32, u32, Span)>,
     /// Named materials and objects.
     pub named: NamedItems,
     /// Number of errors that were merged into an earlier error report.
@@ -87,6 +92,8 @@ impl<'a, 'd> Reader<'a, 'd> {
             stopped: false,
             material: None,
             material_uses: Vec::new(),
+            index_spans: Vec::new(),
+            solid_uses: Vec::new(),
             named: NamedItems::default(),
             repeated: 0,
         };
@@ -129,12 +136,21 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// Returns the scene after performing the checks that need the complete file.
     pub(super) fn finish(self) -> Scene {
         let count = self.scene.materials.len();
-        for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
-            let has = match count {
-                0 => "the scene has no materials".to_string(),
-                1 => "there is only material 0".to_string(),
-                n => format!("there are materials 0 to {}", n - 1),
+        let has = match count {
+            0 => "the scene has no materials".to_string(),
+            1 => "there is only material 0".to_string(),
+            n => format!("there are materials 0 to {}", n - 1),
+        };
+        for (own, index, span) in self.solid_uses.iter().filter(|(own, index, _)| index >= own) {
+            let error = match (*index as usize) < count {
+                true => {
+                    Diagnostic::error(format!("material {own} may use only earlier materials, not material {index}"))
+                }
+                false => Diagnostic::error(format!("material {index} does not exist: {has}")).code("material-index"),
             };
+            self.diagnostics.push(error.at(*span).help("materials are numbered from 0, in file order"));
+        }
+        for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
             let message = format!("material {index} does not exist: {has}");
             let help = "objects that use it are drawn in plain grey";
             self.diagnostics.push(Diagnostic::warning(message).code("material-index").at(*span).help(help));
@@ -263,7 +279,8 @@ impl<'a, 'd> Reader<'a, 'd> {
                 let message = format!("the file ends inside `{name}`");
                 let braces = format!("\n{}\n", "}".repeat(self.blocks.len()));
                 let error = Diagnostic::error(message).code("unclosed-block").at(self.end_span());
-                let error = error.fix(self.end_span(), braces);
+                // After other errors, it is not known where the braces are missing.
+                let error = error.fix_at((self.errors() == 0).then(|| self.end_span()), braces);
                 let error = self.blocks.iter().rev().take(1).fold(error, |e, &b| e.related(b, "opened here"));
                 self.error(error.label("`}` expected"));
                 self.stop();

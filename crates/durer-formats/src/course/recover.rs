@@ -23,6 +23,30 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Ends the innermost block before the word that was read last, if that word begins a line with
+    /// the same indentation as the block. In that case, the `}` of the block is probably missing.
+    /// `message` says why the word cannot be in the block.
+    pub(super) fn unclosed_by_indentation(&mut self, message: &str) -> bool {
+        let (Some(&block), span) = (self.blocks.last(), self.last_span()) else { return false };
+        if self.indentation(span).is_none() || self.indentation(span) != self.indentation(block) {
+            return false;
+        }
+        self.blocks.pop();
+        let error = Diagnostic::error(message).code("unclosed-block").at(span);
+        let error = error.label("a `}` is probably missing before this word");
+        let before = Span { end: span.start, ..span };
+        self.error(error.fix(before, "}\n").related(block, "opened here"));
+        self.step_back();
+        true
+    }
+
+    /// Returns the number of blanks before a word that is the first one on its line.
+    fn indentation(&self, span: Span) -> Option<usize> {
+        let before = self.text(Span { start: 0, end: span.start, ..span });
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        line.trim().is_empty().then(|| line.chars().count())
+    }
+
     /// Reopens the block that the last `}` closed, because that brace was superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
         let message =

@@ -249,7 +249,7 @@ impl Reader<'_, '_> {
                 known
             });
             if self.errors() == errors {
-                self.check_solid(&solid, span);
+                self.record_solid(&solid, span);
             }
             return Some(Material::Solid(solid, transform));
         }
@@ -324,12 +324,14 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Checks that a solid texture uses only earlier materials, because this prevents cycles.
-    fn check_solid(&mut self, solid: &PatternMaterial, span: Span) {
+    /// Records the materials that a solid texture uses. They are checked when the number of
+    /// materials is known.
+    fn record_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
-        if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
-            let message = format!("material {own} may use only earlier materials, not material {index}");
-            self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, in file order"));
+        let numbers = std::mem::take(&mut self.index_spans);
+        for index in durer_scene::material::Pattern::materials(solid) {
+            let number = numbers.iter().rev().find(|(other, _)| *other == index).map_or(span, |(_, at)| *at);
+            self.solid_uses.push((own, index, number));
         }
     }
 

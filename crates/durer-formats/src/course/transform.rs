@@ -38,7 +38,11 @@ impl Reader<'_, '_> {
             } else {
                 objects += 1;
                 if objects == 2 {
-                    let error = Diagnostic::error("a `Transform` can contain only one object").at(span);
+                    let message = "a `Transform` can contain only one object";
+                    if self.unclosed_by_indentation(message) {
+                        break;
+                    }
+                    let error = Diagnostic::error(message).at(span);
                     self.error(error.help("put several objects into a `Group`"));
                 }
                 let read = self.object(&word, span);

@@ -75,8 +75,19 @@ fn missing_file_suggests_a_name_from_inside_only() {
     };
     assert_eq!(similar("neat.obj").as_deref(), Some("near.obj"));
     assert_eq!(similar("models/Cubes.OBJ").as_deref(), Some("cube.obj"));
+    // A wrong name of a folder is compared with the folders beside it.
+    assert_eq!(similar("modles/cube.obj").as_deref(), Some("models"));
+    assert_eq!(similar("nearobj/cube.obj"), None);
     assert_eq!(similar("nothing/like/it.txt"), None);
     assert_eq!(similar("../outside/secrets.obj"), None);
+}
+
+#[test]
+fn each_searched_path_is_listed_once() {
+    let (root, source) = house();
+    let source = source.search_in(root.path().join("scene/./."), true).search_in(root.path().join("outside"), false);
+    let Err(SourceError::Missing { tried, .. }) = source.read("a/b.obj") else { panic!() };
+    assert_eq!(tried, [root.path().join("scene/a/b.obj"), root.path().join("outside/a/b.obj")]);
 }
 
 #[test]

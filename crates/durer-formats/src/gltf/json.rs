@@ -79,7 +79,11 @@ impl<'a> JsonReport<'a> {
             return;
         }
         let prefix = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
-        self.report.borrow_mut().add(self.range(pointer), kind(prefix + message).code(code));
+        let (range, diagnostic) = (self.range(pointer), kind(prefix + message).code(code));
+        // Several parts of the reader can find the same problem.
+        if !self.report.borrow().contains(&range, &diagnostic.message) {
+            self.report.borrow_mut().add(range, diagnostic);
+        }
     }
 }
 

@@ -24,7 +24,7 @@ use std::ops::Range;
 /// that they use.
 #[derive(Default)]
 pub(super) struct Library {
-    pub materials: BTreeMap<String, PrincipledMaterial>,
+    pub materials: BTreeMap<String, (PrincipledMaterial, Span)>,
     pub pictures: BTreeMap<String, TextureImage>,
 }
 
@@ -120,10 +120,10 @@ impl Reader<'_, '_> {
             let keyword = word(keyword);
             if keyword.text == "newmtl" {
                 let name = match (rest.first(), rest.last()) {
-                    (Some(first), Some(last)) => word(first.start..last.end).text,
-                    _ => String::new(),
+                    (Some(first), Some(last)) => word(first.start..last.end),
+                    _ => Word { text: String::new(), at: keyword.at },
                 };
-                let next = MtlMaterial { name, ..MtlMaterial::default() };
+                let next = MtlMaterial { name: name.text, at: name.at, ..MtlMaterial::default() };
                 current.replace(next).into_iter().for_each(|finished| self.finish(finished));
                 continue;
             }
@@ -172,6 +172,7 @@ impl Reader<'_, '_> {
                 [] => Err((keyword.at, format!("`{word}` needs three numbers"))),
             }
         };
+        let statement = keyword.at.join(rest.last().map_or(keyword.at, |last| last.at));
         match word.to_ascii_lowercase().as_str() {
             "kd" => m.diffuse = color()?,
             "ks" => m.specular = color()?,
@@ -179,8 +180,9 @@ impl Reader<'_, '_> {
             "tf" => (m.filter, m.filter_at) = (color()?, keyword.at),
             "ns" => m.exponent = number()?,
             "ni" => m.ior = number()?,
-            "d" => m.opacity = number()?,
-            "tr" => m.opacity = m.opacity.or(number()?.map(|t| 1.0 - t)),
+            "d" => (m.opacity, m.opacity_at) = (number()?, statement),
+            "tr" if m.opacity.is_none() => (m.opacity, m.opacity_at) = (number()?.map(|t| 1.0 - t), statement),
+            "tr" => _ = number()?,
             "illum" => m.model = number()?,
             "pr" => m.roughness = number()?,
             "pm" => m.metalness = number()?,
@@ -304,7 +306,9 @@ impl Reader<'_, '_> {
             self.leave_out("Tf", material.filter_at);
         }
         let name = std::mem::take(&mut material.name);
-        self.library.materials.entry(name).or_insert_with(|| material.into_principled());
+        // The cause of an invisible material is the statement that sets its opacity.
+        let at = if material.opacity.is_some_and(|opacity| opacity <= 0.0) { material.opacity_at } else { material.at };
+        self.library.materials.entry(name).or_insert_with(|| (material.into_principled(), at));
     }
 }
 

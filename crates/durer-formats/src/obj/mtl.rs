@@ -11,6 +11,8 @@ use durer_scene::math::Vec3;
 #[derive(Default)]
 pub(super) struct MtlMaterial {
     pub name: String,
+    /// Span of the name.
+    pub at: Span,
     pub diffuse: Option<Vec3>,
     pub specular: Option<Vec3>,
     pub emission: Option<Vec3>,
@@ -20,6 +22,8 @@ pub(super) struct MtlMaterial {
     pub exponent: Option<f32>,
     pub ior: Option<f32>,
     pub opacity: Option<f32>,
+    /// Span of the statement that sets the opacity.
+    pub opacity_at: Span,
     pub model: Option<f32>,
     pub roughness: Option<f32>,
     pub metalness: Option<f32>,

@@ -11,7 +11,7 @@ use crate::smooth::smoothed;
 use crate::{sticks, too_large};
 use durer_diag::{Diagnostic, Diagnostics, Span, did_you_mean};
 use durer_scene::math::Aabb;
-use durer_scene::scene::{Group, Material, Object, Scene};
+use durer_scene::scene::{Group, Material, Object, Scene, Spanned};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use std::collections::BTreeMap;
@@ -74,7 +74,8 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let wires = wires.groups;
     report.finish(diagnostics, ())?;
     let size = Aabb::around(data.positions.iter().copied()).size().length();
-    for material in library.materials.values_mut().filter(|material| material.bump_texture.is_some()) {
+    let all = library.materials.values_mut().map(|(material, _)| material);
+    for material in all.filter(|material| material.bump_texture.is_some()) {
         material.bump_height *= size;
     }
     let mut scene = Scene::default();
@@ -89,8 +90,12 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     shown_parts.extend(wires.into_iter().map(thick));
     for (part, at) in shown_parts {
         let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
-        let material = library.materials.get_key_value(name.as_str()).map(|(name, material)| {
-            *numbers.entry(name).or_insert_with(|| scene.add_material(Material::Principled(Box::new(material.clone()))))
+        let material = library.materials.get_key_value(name.as_str()).map(|(name, (material, at))| {
+            *numbers.entry(name).or_insert_with(|| {
+                let value = Material::Principled(Box::new(material.clone()));
+                scene.materials.push(Spanned { value, span: *at });
+                scene.materials.len() as u32 - 1
+            })
         });
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);

@@ -417,6 +417,11 @@ impl<'s> Params<'s> {
         names.iter().for_each(|name| _ = self.get(name));
     }
 
+    /// Marks all parameters as used, if it is not known which parameters are allowed.
+    pub fn mark_all_used(&self) {
+        self.list.iter().for_each(|param| param.used.set(true));
+    }
+
     /// Marks parameters as known, and warns about those that are present. `what` says what is used
     /// instead.
     pub fn warn_unsupported(&self, names: &[&'static str], what: &str) {

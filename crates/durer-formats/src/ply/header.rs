@@ -1,6 +1,6 @@
 //! Header of a PLY file, which describes the rows that follow it.
 
-use crate::number::parse_integer;
+use crate::number::{parse_f32, parse_integer};
 use crate::report::{Report, quoted};
 use durer_diag::did_you_mean;
 use std::ops::Range;
@@ -98,6 +98,8 @@ pub(super) struct Element {
 /// Header of a PLY file after parsing.
 pub(super) struct Header {
     pub encoding: Encoding,
+    /// Byte range of the word for the encoding.
+    pub encoding_at: Range<usize>,
     pub elements: Vec<Element>,
     /// True if triangles without normals are shaded flat, whatever the default is. The flag is a
     /// Dürer extension of the format.
@@ -131,7 +133,18 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
             b"element" => reader.element(&words),
             b"property" => reader.property(&words),
             b"end_header" => return reader.finish(keyword, lines.at),
-            _ => reader.unknown("a header line", keyword, KEYWORDS),
+            word if is_data(word) => {
+                let message = "the header has no `end_header` before the first row";
+                reader.report.error(keyword, message).help = Some("add the line `end_header` before this line".into());
+                return None;
+            }
+            word => {
+                let ends = did_you_mean(&String::from_utf8_lossy(word), KEYWORDS) == Some("end_header");
+                reader.unknown("a header line", keyword, KEYWORDS);
+                if ends {
+                    return None;
+                }
+            }
         }
         if reader.report.is_full() {
             return None;
@@ -141,11 +154,16 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     None
 }
 
+/// Returns true if a word is a number or binary data, which can only be part of a row.
+fn is_data(word: &[u8]) -> bool {
+    parse_f32(word).is_ok() || !word.iter().all(u8::is_ascii_graphic)
+}
+
 /// Parser for a PLY header, which stores the elements found so far.
 struct HeaderReader<'a, 'r> {
     bytes: &'a [u8],
     report: &'r mut Report,
-    encoding: Option<Encoding>,
+    encoding: Option<(Encoding, Range<usize>)>,
     elements: Vec<Element>,
     flat: bool,
 }
@@ -171,10 +189,10 @@ impl<'a> HeaderReader<'a, '_> {
             return self.incomplete(words, "format ascii|binary_little_endian|binary_big_endian 1.0");
         };
         match ENCODINGS.iter().find(|(name, _)| *name == self.text(encoding)) {
-            Some(&(_, known)) => self.encoding = Some(known),
+            Some(&(_, known)) => self.encoding = Some((known, encoding.clone())),
             None => {
                 // Continue, so that later errors are reported as well.
-                self.encoding = Some(Encoding::Ascii);
+                self.encoding = Some((Encoding::Ascii, encoding.clone()));
                 let names = ENCODINGS.map(|(name, _)| name);
                 self.unknown(&format!("one of `{}`", names.join("`, `")), encoding.clone(), names);
             }
@@ -233,8 +251,8 @@ impl<'a> HeaderReader<'a, '_> {
             self.report.error(end, "the header has no `format` line").help =
                 Some("add a second line such as `format ascii 1.0`".into());
         }
-        let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
-        Some(Header { encoding, elements: self.elements, flat: self.flat, body })
+        let (encoding, encoding_at) = self.encoding.filter(|_| !self.report.has_errors())?;
+        Some(Header { encoding, encoding_at, elements: self.elements, flat: self.flat, body })
     }
 }
 

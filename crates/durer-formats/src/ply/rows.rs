@@ -43,7 +43,8 @@ pub(super) const COLUMNS: [&[&str]; 22] = [
 /// and opacity, second texture coordinates, and tangent.
 type Row = [f32; COLUMNS.len()];
 
-const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+/// Names of the list that contains the vertices of a face.
+pub(super) const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl<V: ValueReader> RowReader<'_, '_, V> {
     /// Returns the column of a [`Row`] that each property is read into; `None` if a property is not

@@ -264,6 +264,58 @@ fn all_mesh_attributes_round_trip() {
 }
 
 #[test]
+fn wrong_byte_order_in_the_header_is_one_error() {
+    let text = ["binary_little_endian", "binary_big_endian"];
+    for (is_big, order) in [(true, "big-endian"), (false, "little-endian")] {
+        let (stated, right) = (text[usize::from(!is_big)], text[usize::from(is_big)]);
+        let header = &TRIANGLE.replace("ascii", stated)[..TRIANGLE.find("0 0 0").unwrap() + stated.len() - 5];
+        let mut bytes = header.as_bytes().to_vec();
+        let mut put = |mut value: [u8; 4]| {
+            if is_big {
+                value.reverse();
+            }
+            bytes.extend(value);
+        };
+        [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|x| put(x.to_le_bytes()));
+        bytes.push(3);
+        let mut put = |value: i32| bytes.extend(if is_big { value.to_be_bytes() } else { value.to_le_bytes() });
+        (0..3).for_each(&mut put);
+        let expected = format!(
+            "2:8+{} Error: the data are {order}, but the header says `{stated}` (write `{right}` in the header)",
+            stated.len()
+        );
+        assert_eq!(read(&bytes, "m.ply").1, [expected]);
+    }
+}
+
+#[test]
+fn vertex_row_with_another_number_of_values_is_named() {
+    let declared = "but 3 properties are declared";
+    // Reading faces as vertices causes errors later in the file.
+    for count in [4, 5] {
+        let expected = format!(
+            "13:1+7 Error: row 4 of `vertex` has 4 numbers, {declared} (write `element vertex 3` if this row is a \
+             face, or add the missing vertices)"
+        );
+        assert_eq!(finding("vertex 3", &format!("vertex {count}")), expected);
+    }
+    let fields = "(correct this row, or the properties of `vertex` in the header)";
+    let expected = format!("11:1+3 Error: row 2 of `vertex` has 2 numbers, {declared} {fields}");
+    assert_eq!(finding("\n1 0 0\n", "\n1 0\n"), expected);
+    let expected = format!("11:1+5 Error: row 1 of `vertex` has 3 numbers, but 4 properties are declared {fields}");
+    assert_eq!(finding("property float z\n", "property float z\nproperty float nx\n"), expected);
+}
+
+#[test]
+fn missing_end_of_header_is_one_error() {
+    let expected = "9:1+1 Error: the header has no `end_header` before the first row (add the line `end_header` \
+                    before this line)";
+    assert_eq!(finding("end_header\n", ""), expected);
+    let expected = "9:1+10 Error: expected a header line, found `end_heeder` (did you mean `end_header`?)";
+    assert_eq!(finding("end_header", "end_heeder"), expected);
+}
+
+#[test]
 fn nothing_panics() {
     for bytes in [ascii(), binary(false), binary(true), TRIANGLE.as_bytes().to_vec()] {
         abuse(&bytes, "m.ply");

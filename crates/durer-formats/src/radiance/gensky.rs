@@ -9,6 +9,7 @@
 
 use super::words::Word;
 use crate::shared_report::SharedReport;
+use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 use durer_scene::texture::almanac::{self, Moment};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -106,6 +107,12 @@ pub(super) fn text(report: &SharedReport, name: &Word, args: &[Word]) -> Option<
         true => [args[1].number(report)?, args[2].number(report)?],
         false => sky.sun_by_clock(report, &args[..fixed])?,
     };
+    if altitude < 0.0 && sky.zenith_radiance(altitude) <= 0.0 {
+        let message = format!("the sun is {:.1} degrees below the horizon", -altitude);
+        let warning = Diagnostic::warning(message).code("sun-below").at(args[fixed - 1].at);
+        let help = "use a time between sunrise and sunset; for night, add lights";
+        report.push(warning.effect("the sun and its sky emit no light").help(help));
+    }
     Some(sky.print(altitude, azimuth))
 }
 
@@ -213,15 +220,22 @@ impl SkyArgs {
         Some((hours + minutes / 60.0, solar))
     }
 
-    fn print(&self, altitude: f64, azimuth: f64) -> String {
-        let covered = matches!(self.kind, Kind::Overcast | Kind::Uniform);
-        // The formula for the zenith is valid only up to this altitude of the sun.
-        let altitude = if covered { altitude } else { altitude.min(87.0) };
-        let ((s, c), (sin, cos)) = (fp::sin_cos_degrees(azimuth), fp::sin_cos_degrees(altitude));
-        let sun = [-s * cos, -c * cos, sin];
-        let a = altitude.to_radians();
-        let (given, norm) = self.normalization(a, sin);
-        let zenith = self.zenith.or(self.horizontal.map(|whole| whole / (PI * norm))).unwrap_or_else(|| {
+    /// Returns true if clouds hide the sun.
+    fn is_covered(&self) -> bool {
+        matches!(self.kind, Kind::Overcast | Kind::Uniform)
+    }
+
+    /// Limits the altitude of the sun to the range in which the formula for the zenith is valid.
+    fn limited(&self, altitude: f64) -> f64 {
+        if self.is_covered() { altitude } else { altitude.min(87.0) }
+    }
+
+    /// Returns the radiance of the sky at the zenith for an altitude of the sun in degrees.
+    fn zenith_radiance(&self, altitude: f64) -> f64 {
+        let altitude = self.limited(altitude);
+        let (sin, a) = (fp::sin_cos_degrees(altitude).0, altitude.to_radians());
+        let norm = self.normalization(a, sin).1;
+        self.zenith.or(self.horizontal.map(|whole| whole / (PI * norm))).unwrap_or_else(|| {
             let overcast = 8.6 * sin + 0.123;
             let clear = || (1.376 * self.turbidity - 1.81) * fp::tan_f64(a) + 0.38;
             let kilo = match self.kind {
@@ -230,7 +244,17 @@ impl SkyArgs {
                 Kind::Intermediate => 0.5 * (clear() + overcast),
             };
             1000.0 * kilo.max(0.0) / SKY_EFFICACY
-        });
+        })
+    }
+
+    fn print(&self, altitude: f64, azimuth: f64) -> String {
+        let covered = self.is_covered();
+        let altitude = self.limited(altitude);
+        let ((s, c), (sin, cos)) = (fp::sin_cos_degrees(azimuth), fp::sin_cos_degrees(altitude));
+        let sun = [-s * cos, -c * cos, sin];
+        let a = altitude.to_radians();
+        let (given, norm) = self.normalization(a, sin);
+        let zenith = self.zenith_radiance(altitude);
         let mut solar = match (self.sun, self.sun_horizontal) {
             (Some(radiance), _) => radiance,
             (None, Some(flux)) => flux / (SUN_SOLID_ANGLE * sin.max(1e-6)),

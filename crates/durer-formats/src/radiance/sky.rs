@@ -82,6 +82,11 @@ impl Sky {
         Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), to_sky })
     }
 
+    /// Returns true if neither the sky nor the ground emits light.
+    pub fn is_black(&self) -> bool {
+        self.zenith == 0.0 && self.ground == 0.0
+    }
+
     /// Returns the radiance in a unit direction in world space.
     pub fn at(&self, dir: DVec3) -> f32 {
         let dir = self.to_sky * dir;

@@ -3,6 +3,7 @@
 use super::args::RadPrimitive;
 use super::context::PrimitiveContext;
 use super::converted::{DistantSource, MaterialKind};
+use super::sky::Sky;
 use super::state::Reader;
 use crate::panorama;
 use crate::pictures::picture_error;
@@ -66,6 +67,11 @@ impl Reader<'_> {
         (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         let Some(at) = self.distant.first().map(|distant| distant.at) else { return };
         let distant = std::mem::take(&mut self.distant);
+        // A black environment map adds nothing to the black background.
+        if distant.iter().all(|source| source.radiance == Vec3::ZERO || source.sky.as_ref().is_some_and(Sky::is_black))
+        {
+            return;
+        }
         let light = |dir: DVec3| {
             let source = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
             source.map_or(Vec3::ZERO, |source| source.radiance * source.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))

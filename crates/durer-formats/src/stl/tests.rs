@@ -51,6 +51,13 @@ fn errors_have_positions() {
     assert_eq!(first(wrong.as_bytes()), "5:18+1 Error: expected a number, found `x`");
     let missing = TEXT.replace("VERTEX 1 1 0\n", "");
     assert!(first(missing.as_bytes()).contains("a facet needs 3 vertices, found 2"));
+    // A file that was cut is incomplete, wherever it ends.
+    let cut = |word: &str| first(&TEXT.as_bytes()[..TEXT.rfind(word).unwrap()]);
+    let message = "Error: the file ends inside this facet, because `endfacet` is missing";
+    assert!(cut("ENDFACET").starts_with(&format!("9:3+5 {message}")), "{}", cut("ENDFACET"));
+    assert!(cut("ENDLOOP").starts_with(&format!("9:3+5 {message}")), "{}", cut("ENDLOOP"));
+    assert!(cut("VERTEX 0").starts_with("9:3+5 Error: a facet needs 3 vertices, found 2"), "{}", cut("VERTEX 0"));
+    assert_eq!(cut("endsolid"), "1:1+5 Warning: the file ends without `endsolid`, so facets may be missing");
     let odd = TEXT.replace("outer loop", "inner loop");
     assert!(first(odd.as_bytes()).starts_with("3:5+5 Error: expected `facet`"));
     assert!(first(b"solid nothing\nendsolid\n").contains("no triangles"));

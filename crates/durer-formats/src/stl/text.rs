@@ -12,15 +12,19 @@ use std::ops::Range;
 pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut facet: Option<Range<usize>> = None;
+    let mut open = OpenBlocks::default();
     for line in lines(bytes) {
         let mut words = words(bytes, line.clone());
         let Some(first) = words.next() else { continue };
         let word = bytes[first.clone()].to_ascii_lowercase();
         match word.as_slice() {
             // The rest of the line is a name and is skipped.
-            b"solid" | b"endsolid" | b"outer" | b"\xef\xbb\xbfsolid" => {}
+            b"solid" | b"\xef\xbb\xbfsolid" => open.solid = Some(first),
+            b"endsolid" => open = OpenBlocks::default(),
+            b"outer" => {}
             b"facet" => {
                 unfinished(&mut corners, facet.take(), report);
+                open.facet = Some(first.clone());
                 facet = Some(first);
             }
             b"vertex" => corners.extend(vertex(bytes, first, words, report)),
@@ -31,6 +35,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
                     facet = None;
                 }
                 if word == b"endfacet" {
+                    open.facet = None;
                     unfinished(&mut corners, facet.take(), report);
                 }
             }
@@ -47,6 +52,29 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
         }
     }
     unfinished(&mut corners, facet, report);
+    open.report(report);
+}
+
+/// Keywords of the blocks that have not been closed.
+#[derive(Default)]
+struct OpenBlocks {
+    solid: Option<Range<usize>>,
+    facet: Option<Range<usize>>,
+}
+
+impl OpenBlocks {
+    /// Reports that the file ends inside a block, unless there are other errors.
+    fn report(self, report: &mut Report) {
+        if report.has_errors() {
+            return;
+        }
+        if let Some(facet) = self.facet {
+            report.error(facet, "the file ends inside this facet, because `endfacet` is missing").help =
+                Some("export or copy the mesh again: the file is incomplete".into());
+        } else if let Some(solid) = self.solid {
+            report.warning(solid, "the file ends without `endsolid`, so facets may be missing");
+        }
+    }
 }
 
 /// Reports a facet that does not have exactly three vertices.

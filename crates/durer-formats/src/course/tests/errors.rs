@@ -222,8 +222,13 @@ fn counts_and_indices() {
     );
     one(
         "Materials { Checkerboard { materialIndex 0 materialIndex 1 } Material { } }",
-        "1:13 error: material 0 may use only earlier materials, not material 0 [Checkerboard] (materials are \
-         numbered from 0, in file order)",
+        "1:42 error: material 0 may use only earlier materials, not material 0 [0] (materials are numbered from 0, \
+         in file order)",
+    );
+    one(
+        "Materials { Material { } Checkerboard { materialIndex 0 materialIndex 5 } }",
+        "1:71 error: material 5 does not exist: there are materials 0 to 1 [5] (materials are numbered from 0, in \
+         file order)",
     );
     in_group(
         "MaterialIndex 7",

@@ -118,6 +118,7 @@ fn one_mistake_gives_one_error() {
         ("color 1 1 1\n    }", "color 1 1 1", "12:5"),
         ("radius 1\n    }", "radius 1", "39:5"),
         ("vertex2 0 1 0\n    }", "vertex2 0 1 0", "60:1"),
+        ("cube.obj\n        }\n", "cube.obj\n", "47:5"),
         ("color 1 1 1\n    }", "color 1 1 1\n    } }", "12:7"),
         ("radius 1\n    }", "radius 1\n    } }", "39:7"),
         ("angle 30\n}", "angle 30\n} }", "6:3"),
@@ -155,16 +156,45 @@ fn two_mistakes_give_two_errors() {
 }
 
 #[test]
-fn lost_brace_gives_an_error_at_its_effect_and_at_the_end() {
-    for (from, to, places) in [
-        // The `}` of the transform closes the mesh instead, so the next group is inside the
-        // transform.
-        ("cube.obj\n        }\n", "cube.obj\n", ["47:5", "60:1"]),
-        ("diffuseColor 1 0 0", "diffuseColor 1 0 0 }", ["26:9", "28:5"]),
-    ] {
-        let text = SCENE.replacen(from, to, 1);
-        let (_, findings) = read_as(text.as_bytes(), Dialect::F12a4, false);
-        assert_eq!(findings.len(), 2, "{findings:#?}");
-        assert!(findings.iter().zip(places).all(|(f, place)| f.starts_with(&format!("{place} "))), "{findings:#?}");
+fn superfluous_brace_gives_an_error_at_its_effect_and_at_the_end() {
+    let text = SCENE.replacen("diffuseColor 1 0 0", "diffuseColor 1 0 0 }", 1);
+    let (_, findings) = read_as(text.as_bytes(), Dialect::F12a4, false);
+    assert!(
+        findings.len() == 2 && findings[0].starts_with("26:9 ") && findings[1].starts_with("28:5 "),
+        "{findings:#?}"
+    );
+}
+
+/// Returns the error codes of a text, and the text after all fixes have been applied.
+fn fixed(text: &str) -> (Vec<&'static str>, String) {
+    let mut diagnostics = Diagnostics::default();
+    let options = ReadOptions { dialect: Dialect::F12a4, strict: false, compat: 0 };
+    read(text.as_bytes(), 0, options, &mut diagnostics);
+    let mut text = text.to_string();
+    for edit in diagnostics.iter().flat_map(|diagnostic| &diagnostic.fix) {
+        text.replace_range(edit.span.start as usize..edit.span.end as usize, &edit.text);
     }
+    (diagnostics.iter().map(|diagnostic| diagnostic.code).collect(), text)
+}
+
+#[test]
+fn missing_brace_of_a_transform_is_added_before_the_next_object() {
+    for from in ["            obj_file cube.obj\n        }\n    }\n", "            obj_file cube.obj\n        }\n"] {
+        let text = SCENE.replacen(from, from.strip_suffix("    }\n").unwrap(), 1);
+        assert_ne!(text, SCENE);
+        let (codes, text) = fixed(&text);
+        assert_eq!(codes, ["unclosed-block"], "{text}");
+        clean(&text, Dialect::F12a4);
+    }
+}
+
+#[test]
+fn braces_are_added_at_the_end_only_if_there_is_no_other_error() {
+    let cut = SCENE.strip_suffix("    }\n}\n").unwrap();
+    let (codes, text) = fixed(cut);
+    assert_eq!(codes, ["unclosed-block"]);
+    clean(&text, Dialect::F12a4);
+    let wrong = cut.replace("radius 1", "radius -1");
+    let (codes, text) = fixed(&wrong);
+    assert_eq!((codes.len(), text), (2, wrong));
 }

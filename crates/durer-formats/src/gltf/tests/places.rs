@@ -50,6 +50,13 @@ fn glb_findings_have_positions_in_the_json() {
 }
 
 #[test]
+fn error_that_two_parts_of_the_reader_find_is_reported_once() {
+    let found = messages("a.gltf", corners(r#","NORMAL":7},"indices":1"#, PLAIN).as_bytes());
+    let wanted = "/meshes/0/primitives/0/attributes/NORMAL: index 7 refers to an item that does not exist";
+    assert!(found.len() == 1 && found[0].ends_with(wanted), "{found:#?}");
+}
+
+#[test]
 fn warnings_name_the_part_of_the_file() {
     let line = |text: &str, what: &str| {
         let at = text.find(what).unwrap();

@@ -22,6 +22,20 @@ fn of(statements: &str) -> PrincipledMaterial {
 }
 
 #[test]
+fn material_has_the_place_of_its_name_or_of_the_opacity_that_hides_it() {
+    let place = |statements: &str| {
+        let mtl = format!("# no material\nnewmtl a\n{statements}\n");
+        let folder = folder(&[("m.mtl", mtl.as_bytes())]);
+        let span = read_in(folder.path(), "m.obj", FACES).0.unwrap().materials[0].span;
+        assert_eq!(span.file, 1);
+        mtl[span.start as usize..span.end as usize].to_string()
+    };
+    assert_eq!(place("Kd 1 0 0\nd 0.5"), "a");
+    assert_eq!(place("Kd 1 0 0\nTr 1\nKs 0 0 0"), "Tr 1");
+    assert_eq!(place("d 0\nTr 1"), "d 0");
+}
+
+#[test]
 fn specular_weight_follows_ks_in_physical_materials_too() {
     let weight = |statements: &str| of(statements).specular_weight;
     assert_eq!((weight("Ks 0 0 0\nillum 1"), weight("Ks 0.5 0.5 0.5\nillum 2"), weight("illum 2")), (0.0, 0.5, 0.0));

@@ -189,6 +189,7 @@ impl Reader<'_> {
                     None => suggest(other, MATERIALS),
                 };
                 self.no_material(other, at, help, old.is_some());
+                params.mark_all_used();
                 return MaterialDef::Interface;
             }
         }

@@ -132,6 +132,7 @@ impl Reader<'_> {
                 let help =
                     if is_new { Some(format!("`{other}` is a pbrt-v4 material")) } else { suggest(other, MATERIALS) };
                 self.no_material(other, at, help, is_new);
+                params.mark_all_used();
                 return MaterialDef::Interface;
             }
         };

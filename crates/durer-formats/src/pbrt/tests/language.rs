@@ -123,6 +123,14 @@ fn errors_have_place_and_suggestion() {
 }
 
 #[test]
+fn parameters_of_an_unknown_material_are_not_reported() {
+    for (material, other) in [("difuse", "rgb reflectance"), ("mattte", "rgb Kd")] {
+        let (_, messages) = read(&format!("WorldBegin Material \"{material}\" \"{other}\" [ 1 1 1 ] Shape \"sphere\""));
+        assert!(messages.len() == 1 && messages[0].contains("error unknown material"), "{messages:#?}");
+    }
+}
+
+#[test]
 fn unsupported_features_are_reported_once_with_substitute() {
     let text = "Integrator \"bdpt\" Camera \"perspective\"\nWorldBegin\n\
                 MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\

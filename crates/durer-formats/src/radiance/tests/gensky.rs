@@ -75,6 +75,21 @@ fn command_gives_the_sky_of_its_output() {
 }
 
 #[test]
+fn sun_below_the_horizon_is_a_warning() {
+    let glow = "skyfunc glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180\n";
+    let (scene, found) = read(&format!("!gensky 12 21 22 -a 48 -o -11 -m -15\n{glow}void sphere s 0 0 4 0 0 0 1\n"));
+    let scene = scene.unwrap();
+    assert!(scene.background.environment.is_none() && scene.lights.is_none());
+    let expected = "1:15 warning the sun is 57.9 degrees below the horizon (use a time between sunrise and sunset; for \
+                    night, add lights)";
+    assert!(found.iter().any(|line| line.ends_with(expected)), "{found:?}");
+    // With a given zenith, there is light at night.
+    let (scene, found) = read(&format!("!gensky 12 21 22 -b 1\n{glow}void sphere s 0 0 4 0 0 0 1\n"));
+    assert!(scene.unwrap().background.environment.is_some());
+    assert!(!found.iter().any(|line| line.contains("below the horizon")), "{found:?}");
+}
+
+#[test]
 fn errors_have_positions() {
     for (text, expected) in [
         ("!gensky 6 21", "1:2 error `gensky` needs month, day and hour, or `-ang` with altitude and azimuth"),
