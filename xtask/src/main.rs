@@ -80,8 +80,8 @@ const USAGE: &str = "Commands:
       Fuzz the readers of scenes, meshes, pictures and parts, and compare random scenes by tree, grid and brute force.
       --minutes: for each target. --jobs: targets at a time. Needs a nightly compiler and cargo-fuzz.
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
-      Count the mistakes that `durer compare` identifies in wrong pictures by an independent tracer, and the causes that
-      `durer check` identifies in broken scenes.
+      Count the mistakes that `durer compare` identifies in wrong pictures by an independent tracer and an independent
+      path tracer (--only paths), and the causes that `durer check` identifies in broken scenes.
   cargo xtask peers [--python PROGRAM] [--samples 1024] [--only TEXT]
       Compare equal scenes with Mitsuba 3, pixel by pixel. Without --python, installs Mitsuba from the package index into
       target/peers.
