@@ -157,7 +157,11 @@ fn wrong_rows() {
         ("3 0 1 2", "3 0 1.5 2", "13:5+3 Error: expected a whole number, found `1.5`".into()),
         ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 vertices, found 2".into()),
         ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have -1 values".into()),
-        ("3 0 1 2", "200 0 1 2", "13:1+3 Error: the list should have 200 values, but the file ends before".into()),
+        (
+            "3 0 1 2",
+            "200 0 1 2",
+            "13:1+3 Error: the list should have 200 values, but the file ends before the last value".into(),
+        ),
         ("3 0 1 2\n", "", "13:1+0 Error: the file ends in row 1 of element `face`, which should have 1 row".into()),
         (
             "3 0 1 2\n",
@@ -221,7 +225,7 @@ fn promised_counts_reserve_no_memory() {
     assert_eq!(read(header("binary_little_endian", huge, "0").as_bytes(), "m.ply").1, [short]);
     let mut list = header("binary_little_endian", "0", "1").into_bytes();
     list.extend(i32::MAX.to_le_bytes());
-    let expected = "10:1+4 Error: the list should have 2147483647 values, but the file ends before";
+    let expected = "10:1+4 Error: the list should have 2147483647 values, but the file ends before the last value";
     assert_eq!(read(&list, "m.ply").1, [expected]);
 }
 
