@@ -53,7 +53,7 @@ fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
             let mut found = report.part();
             let mesh = RowReader::new(bytes, AsciiValues::new(bytes, start), &mut found).read(elements);
             // A wrong number of rows causes many errors, or a single error far from the cause.
-            if found.count() == 0 || !report_wrong_row(bytes, &header, report) {
+            if !found.begins_at_or_after(start) || !report_wrong_row(bytes, &header, report) {
                 report.join(found);
             }
             mesh

@@ -92,6 +92,12 @@ impl Report {
         self.diagnostics.iter().any(|known| known.span == Some(span) && known.message == message)
     }
 
+    /// Returns true if there are diagnostics and all of them are at or after a byte offset.
+    pub fn begins_at_or_after(&self, at: usize) -> bool {
+        let is_after = |known: &Diagnostic| known.span.is_some_and(|span| span.start as usize >= at);
+        !self.diagnostics.is_empty() && self.diagnostics.iter().all(is_after)
+    }
+
     /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
         self.diagnostics.len()

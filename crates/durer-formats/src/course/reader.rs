@@ -54,8 +54,8 @@ pub(super) struct Reader<'a, 'd> {
     pub material_uses: Vec<(u32, Span)>,
     /// Numbers of materials in the current solid texture, with their spans.
     pub index_spans: Vec<(u32, Span)>,
-    /// Uses of materials in solid textures: the number of the texture, the material that it uses,
-    /// and the span of that number. Textures may use only earlier materials, which prevents cycles.
+    /// Materials that solid textures use but that do not precede them: the number of the texture,
+    /// the number of the material, and its span.
     pub solid_uses: Vec<(u32, u32, Span)>,
     /// Named materials and objects.
     pub named: NamedItems,
@@ -141,7 +141,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             1 => "there is only material 0".to_string(),
             n => format!("there are materials 0 to {}", n - 1),
         };
-        for (own, index, span) in self.solid_uses.iter().filter(|(own, index, _)| index >= own) {
+        for (own, index, span) in &self.solid_uses {
             let error = match (*index as usize) < count {
                 true => {
                     Diagnostic::error(format!("material {own} may use only earlier materials, not material {index}"))

@@ -324,12 +324,12 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Records the materials that a solid texture uses. They are checked when the number of
-    /// materials is known.
+    /// Records the first material that a solid texture uses but that does not precede the texture,
+    /// because this could form a cycle. The error is reported when the number of materials is known.
     fn record_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
         let numbers = std::mem::take(&mut self.index_spans);
-        for index in durer_scene::material::Pattern::materials(solid) {
+        if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
             let number = numbers.iter().rev().find(|(other, _)| *other == index).map_or(span, |(_, at)| *at);
             self.solid_uses.push((own, index, number));
         }

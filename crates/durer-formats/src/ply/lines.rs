@@ -29,7 +29,9 @@ pub(super) fn report_wrong_row(bytes: &[u8], header: &Header, report: &mut Repor
         if declared == 1 { "1 property is".to_string() } else { format!("{declared} properties are") },
     );
     let text = String::from_utf8_lossy(&bytes[at.clone()]);
-    let is_face = text.split_ascii_whitespace().next().and_then(|word| word.parse().ok()) == numbers.checked_sub(1);
+    let length: Option<usize> = text.split_ascii_whitespace().next().and_then(|word| word.parse().ok());
+    // A face consists of the number of its vertices and at least three indices.
+    let is_face = numbers > 3 && length == Some(numbers - 1);
     let help = match row > 0 && is_face {
         true => format!("write `element vertex {row}` if this row is a face, or add the missing vertices"),
         false => "correct this row, or the properties of `vertex` in the header".to_string(),

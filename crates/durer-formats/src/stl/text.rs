@@ -51,7 +51,10 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
             return;
         }
     }
-    unfinished(&mut corners, facet, report);
+    // A facet with all of its vertices is missing only its end.
+    if corners.len() != 3 {
+        unfinished(&mut corners, facet, report);
+    }
     open.report(report);
 }
 

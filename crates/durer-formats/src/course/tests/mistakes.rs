@@ -196,5 +196,5 @@ fn braces_are_added_at_the_end_only_if_there_is_no_other_error() {
     clean(&text, Dialect::F12a4);
     let wrong = cut.replace("radius 1", "radius -1");
     let (codes, text) = fixed(&wrong);
-    assert_eq!((codes.len(), text), (2, wrong));
+    assert_eq!((codes.len(), text.as_str()), (2, cut));
 }
