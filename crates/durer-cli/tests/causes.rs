@@ -93,6 +93,7 @@ fn put_files(folder: &TestFolder) {
     folder.write("sheet.obj", sheet("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"));
     folder.write("point.obj", sheet(&"vt 0 0\n".repeat(4)));
     folder.write("grey.ppm", "P3\n2 1\n255\n99 99 99 99 99 99\n");
+    folder.write("black.ppm", "P3\n2 1\n255\n0 0 0 0 0 0\n");
     folder.write("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
     folder.write("level.pgm", format!("P2\n4 4\n255\n{}\n", "180\n".repeat(16)));
     let hills: Vec<String> = (0..256).map(|i| ((i % 16) * (i / 16) % 50 * 5).to_string()).collect();

@@ -114,7 +114,7 @@ const CASES: &[Case] = &[
         &[(LEFT, "Difference { Sphere { center -1.2 1 0 radius 1 } Sphere { center -1.2 1 0 radius 1.5 } }")],
         "empty-solid",
     ),
-    ("durer", "", &[("PerspectiveCamera {", "ThinLensCamera { aperture 2")], "wide-aperture"),
+    ("durer", "", &[("PerspectiveCamera {", "ThinLensCamera { aperture 8 focusDistance 9")], "wide-aperture"),
 ];
 
 const LEFT: &str = "Sphere { center -1.2 1 0 radius 1 }";

@@ -2,8 +2,10 @@
 
 use super::facing::{flip_text, flipped};
 use super::finding::{Finding, MAX_FINDINGS};
+use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape};
+use super::verdict::most_common;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::integrator::IntegratorKind;
 use durer_render::world::emitters::emitter_of;
@@ -19,6 +21,10 @@ const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new
 /// Positions on the unit square at which an area light is sampled.
 const MIN_CONTRIBUTION: f32 = 0.1;
 const MIN_VISIBLE_SHARE: f32 = 0.03;
+/// Maximum number of triangles of a mesh that is examined as an area light.
+const MAX_PARTS: u32 = 4096;
+/// Cosine between normals above which the triangles of a mesh form a flat area light.
+const MIN_FLAT_COSINE: f32 = 0.999;
 
 /// Light from one area light that arrives at the visible points, with and without occlusion. Both
 /// are sums of cosines at the light.
@@ -32,7 +38,7 @@ struct AreaLightSums {
     /// Number of rays that pass through glass only.
     glass: usize,
     rays: usize,
-    /// The last object that was found to occlude a point in front of the light.
+    /// The object that occludes most of the points in front of the light.
     blocker: Option<u32>,
 }
 
@@ -85,37 +91,79 @@ fn first_occluder(scene_probe: &SceneProbe, light: u32, from: Vec3, to: Vec3) ->
     (None, glass)
 }
 
+/// Returns parts of an area light that represent all of them. Returns `None` for a mesh that is not
+/// flat.
+fn sampled_parts(object: &Object) -> Option<Vec<u32>> {
+    let count = object.parts();
+    if count == 1 {
+        return Some(vec![0]);
+    }
+    let bounds = object.bounds().filter(|_| count <= MAX_PARTS)?;
+    let (_, first) = (0..count).filter_map(|part| emitter_of(object, part)).find(|of| of.1 != Vec3::ZERO)?;
+    // The heights of the parts above their common plane are compared with the size of the mesh.
+    let height = |part: u32| {
+        let (form, normal) = emitter_of(object, part).filter(|(_, normal)| *normal != Vec3::ZERO)?;
+        let (point, ..) = form.point(normal, Vec2::splat(0.5))?;
+        Some((normal.dot(first), point.dot(first.as_dvec3())))
+    };
+    let mut parts = Vec::new();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for part in 0..count {
+        // A part without area has no normal.
+        let Some((cosine, place)) = height(part) else { continue };
+        if cosine < MIN_FLAT_COSINE {
+            return None;
+        }
+        (low, high) = (low.min(place), high.max(place));
+        parts.push(part);
+    }
+    let flat = high - low <= 1e-3 * f64::from(bounds.size().length());
+    let step = parts.len().div_ceil(ON_LIGHT.len()).max(1);
+    let parts: Vec<u32> = parts.into_iter().step_by(step).collect();
+    (flat && !parts.is_empty()).then_some(parts)
+}
+
 /// Measures the light from an area light that arrives at the visible points, and returns true if
-/// the light is flat. Returns `None` if the light consists of several parts or cannot be sampled.
+/// the light is flat. Returns `None` if the light is a mesh that is not flat, or if it cannot be
+/// sampled.
 fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLightSums, bool)> {
     let object = &scene_probe.world().objects()[light as usize];
-    let all: Vec<Vec3> =
-        scene_probe.hits().filter(|(_, hit)| hit.object != light).map(|(probe, hit)| probe.ray.at(hit.t)).collect();
+    let all: Vec<(&Probe, &ProbeHit)> = scene_probe.hits().filter(|(_, hit)| hit.object != light).collect();
     let points = all.iter().step_by(all.len().div_ceil(MAX_POINTS).max(1));
+    // Each point has the normal on the visible side of its surface if the surface is opaque.
+    let points = points.map(|(probe, hit)| {
+        let opaque = !transmits_light(scene_probe, hit.object);
+        let at = opaque.then(|| scene_probe.world().intersect(&probe.ray, &mut ())).flatten();
+        let normal = at.map(|at| if at.inside() { -at.surface.n_geo } else { at.surface.n_geo });
+        (probe.ray.at(hit.t), hit.object, normal)
+    });
     let mut contribution = AreaLightSums::default();
     let mut flat = true;
-    for place in points {
-        for u in ON_LIGHT {
+    let parts = sampled_parts(object)?;
+    let mut blockers = Vec::new();
+    for (place, surface, side) in points {
+        for (u, part) in ON_LIGHT.into_iter().zip(parts.iter().cycle()) {
             let (point, normal) = if let Some(plane) = plane(object) {
                 let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
                 let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
-                (*place - (*place - on).dot(n) * n, n)
-            } else if object.parts() == 1 {
-                let (form, normal) = emitter_of(object, 0)?;
+                (place - (place - on).dot(n) * n, n)
+            } else {
+                let (form, normal) = emitter_of(object, *part)?;
                 flat &= normal != Vec3::ZERO;
                 let (point, n, _) = form.point(normal, u)?;
                 (point.as_vec3(), n)
-            } else {
-                return None;
             };
-            let direction = *place - point;
+            let direction = place - point;
             let cosine = direction.normalize_or_zero().dot(normal);
-            let (blocker, glass) = first_occluder(scene_probe, light, point, *place);
+            let (blocker, glass) = first_occluder(scene_probe, light, point, place);
+            // An opaque surface also occludes a light behind it.
+            let behind = side.is_some_and(|side| side.dot(direction) > 0.0);
+            let blocker = blocker.or(Some(surface).filter(|_| behind));
             contribution.rays += 1;
             contribution.glass += usize::from(glass && blocker.is_none());
             if cosine > 0.0 {
                 contribution.front_free += cosine;
-                contribution.blocker = blocker.or(contribution.blocker);
+                blockers.extend(blocker);
             }
             if blocker.is_none() {
                 contribution.front += cosine.max(0.0);
@@ -123,6 +171,7 @@ fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLight
             }
         }
     }
+    contribution.blocker = most_common(&blockers);
     (contribution.rays > 0).then_some((contribution, flat))
 }
 
@@ -148,19 +197,31 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         if !flat || contribution.back <= 0.0 || contribution.front > MIN_CONTRIBUTION * contribution.back || indirect {
             return None;
         }
-        let turn = match shape(object).and_then(Shape::flip) {
-            Some(Flip::Corners(_)) => "swap two vertices of the triangle".into(),
-            Some(flip) => flip_text(flip),
-            None => "negate `normal`".into(),
+        let flip = shape(object).and_then(Shape::flip);
+        let help = match flip {
+            _ if scene_probe.model_format().is_some() => {
+                "turn the light towards the scene, or reverse the order of its vertices: a surface emits light on the \
+                 side of its normal"
+                    .to_string()
+            }
+            _ => {
+                let turn = match flip {
+                    Some(Flip::Corners(_)) => "swap two vertices of the triangle".into(),
+                    Some(flip) => flip_text(flip),
+                    None if plane(object).is_some() => "negate `normal`".into(),
+                    None => "reverse the order of the vertices of the faces".into(),
+                };
+                format!(
+                    "{turn}, because a surface emits light on the side of its normal; or set `walls thin` in the \
+                     material so that both sides emit light"
+                )
+            }
         };
         let message = format!("the {} emits light away from everything visible", scene_probe.object(number));
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(number))
             .effect("the light illuminates nothing visible, and its back is black")
-            .help(format!(
-                "{turn}, because a surface emits light on the side of its normal; or set `walls thin` in the material \
-                 so that both sides emit light"
-            ));
+            .help(help);
         let whole = scene_probe.is_dark() || scene_probe.world().lights().is_empty();
         Some(Finding::from(with_flip(scene_probe, diagnostic, number)).affecting_whole_picture(whole))
     };
@@ -233,6 +294,7 @@ pub(super) fn in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         })
     };
     let mut findings = super::physical::light_in_glass(scene_probe);
+    findings.extend(super::integrator::behind_glass(scene_probe));
     for (number, _) in emissive_objects(scene_probe) {
         let Some(middle) = world.objects()[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
         let Some(glass) = around(middle, Some(number)) else { continue };

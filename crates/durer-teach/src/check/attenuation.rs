@@ -48,6 +48,10 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
             }
             // The default attenuation of the dialect applies unless the scene file sets another
             // one.
+            _ if scene_probe.field_span(span, &["color"]).is_none() => {
+                let help = format!("the light is about {} times too weak: increase its intensity", number(factor));
+                return Some(diagnostic.help(help));
+            }
             _ => match (scene_probe.field_span(span, &["color"])?, attenuation(&scene_probe.world().lights()[light])) {
                 (color, Some(a)) if scene_probe.input.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };

@@ -27,12 +27,19 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
         // The opposite direction is usually the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - point).normalize_or(Vec3::NEG_Y);
-        let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - point };
-        let text = vector(aimed);
-        let help = format!(
-            "write `direction {text}` to aim at the center of the visible objects; `direction` is the direction in \
-             which the light travels"
-        );
+        let negated = turned.dot(to) > 0.7;
+        let text = vector(if negated { -direction } else { middle - point });
+        let model = scene_probe.model_format().is_some();
+        let help = match negated {
+            _ if model => "turn the light towards the visible objects".to_string(),
+            true => format!(
+                "negate the direction: write `direction {text}`; `direction` is the direction in which the light travels"
+            ),
+            false => format!(
+                "write `direction {text}` to aim at the center of the visible objects; `direction` is the direction \
+                 in which the light travels"
+            ),
+        };
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
         match scene_probe.field_span(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
@@ -47,7 +54,7 @@ pub(super) fn narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
     missing(scene_probe, BeamMiss::Narrow, |diagnostic, light| {
         let Some(spot) = spot(&light.value) else { return diagnostic };
         let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
-        let message = format!("the cone of this spotlight is only {} degrees wide", number(spot.angle));
+        let message = format!("the half angle of this spotlight's cone is only {} degrees", number(spot.angle));
         let diagnostic = Diagnostic { message, ..diagnostic };
         let help = format!("`angle` is in degrees, from the axis to the edge: try `angle {degrees}`");
         let Some(value) = scene_probe.field_span(light.span, &["angle"]) else { return diagnostic.help(help) };

@@ -1,7 +1,7 @@
 //! Measures the brightness of the picture from a few samples.
 
 use super::probes::{Probe, ProbeGrid};
-use durer_render::integrator::{Integrate, Path};
+use durer_render::integrator::{Integrate, Path, RenderSettings};
 use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
@@ -14,12 +14,17 @@ const SAMPLES: u32 = 16;
 /// one colour per probe. Path tracing gives the mean of `SAMPLES` samples for at most `MAX_PIXELS`
 /// probes.
 pub(super) fn exposed_colors(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
+    exposed_colors_with(grid, grid.input.job.settings)
+}
+
+/// Returns the exposed colours that the picture would have with other settings.
+pub(super) fn exposed_colors_with(grid: &ProbeGrid, settings: RenderSettings) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.input.exposure;
     let Some(transport) = grid.input.job.method.path_options() else {
         return grid.probes.iter().enumerate().map(|(i, probe)| (i, exposure * probe.color)).unzip();
     };
     let job = grid.input.job;
-    let path = Path::new(grid.world(), job.settings, transport);
+    let path = Path::new(grid.world(), settings, transport);
     let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
     // An odd step avoids sampling the same columns in each row.
     let step = if step.is_multiple_of(2) { step + 1 } else { step };

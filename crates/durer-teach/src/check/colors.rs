@@ -8,7 +8,7 @@ use durer_scene::dialect::{Dialect, Quirk, SecondaryRays};
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::material::Pattern;
 use durer_scene::math::Color;
-use durer_scene::scene::{Material as ParsedMaterial, Spanned};
+use durer_scene::scene::{Material as ParsedMaterial, Object as WrittenObject, ObjectKind, Spanned};
 
 /// Materials that reflect less than this look black.
 const BLACK: f32 = 0.01;
@@ -59,16 +59,23 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     // Part of a pattern may be black, but not the whole pattern.
     let shown =
         |i: u32| if whole { rays(scene_probe, i) > 0 } else { scene_probe.hits().any(|(_, hit)| hit.material == i) };
-    let black: Vec<_> = phongs(scene_probe).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
+    // Emissive surfaces are usually black.
+    let emits = |phong: &Phong| phong.emission.as_ref().is_some_and(|own| own.radiance != Color::ZERO);
+    let black: Vec<_> =
+        phongs(scene_probe).filter(|(i, _, phong)| is_black(phong) && !emits(phong) && shown(*i)).collect();
     let say = |(i, material, _): &(u32, &Spanned<ParsedMaterial>, &Phong)| {
+        let word = match &material.value {
+            ParsedMaterial::Principled(_) => "baseColor",
+            _ => "diffuseColor",
+        };
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it reflects no light"))
             .label(format!("on {} of the visible surfaces", percent(rays(scene_probe, *i), all)))
             .effect("objects with this material are black under any light")
-            .help(
-                "increase `diffuseColor`, the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
-                 is a light grey",
-            );
-        let diagnostic = scene_probe.at_value(diagnostic, material.span, &["diffuseColor", "diffuse"]);
+            .help(format!(
+                "increase `{word}`, the fraction of light that the material reflects; for example, `0.8 0.8 0.8` is \
+                 a light grey"
+            ));
+        let diagnostic = scene_probe.at_value(diagnostic, material.span, &[word, "diffuse"]);
         Finding::from(diagnostic).affecting_whole_picture(whole)
     };
     black.iter().take(MAX_FINDINGS).map(say).collect()
@@ -538,6 +545,21 @@ pub(super) fn no_coordinates(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
+/// Marks the materials of an object and of its parts as they are written in the scene file. Empty
+/// solids have no compiled parts.
+fn mark_written(object: &WrittenObject, used: &mut [bool]) {
+    match &object.node {
+        ObjectKind::Group(group) => group.objects.iter().for_each(|inner| mark_written(inner, used)),
+        ObjectKind::Transform(_, inner) => mark_written(inner, used),
+        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| mark_written(part, used)),
+        _ => {
+            if let Some(used) = object.material.and_then(|material| used.get_mut(material as usize)) {
+                *used = true;
+            }
+        }
+    }
+}
+
 /// Reports materials that no object uses.
 pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
@@ -554,6 +576,8 @@ pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }
     }
+    let root = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects);
+    root.for_each(|object| mark_written(object, &mut used));
     let material = &scene_probe.input.scene.materials;
     let unused: Vec<usize> = (0..material.len()).filter(|&i| !used[i]).collect();
     let Some(&first) = unused.first() else { return Vec::new() };

@@ -7,6 +7,7 @@ use durer_diag::{Severity, Span};
 use durer_formats::course::place;
 use durer_scene::camera::Projection;
 use durer_scene::dialect::Dialect;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
@@ -24,6 +25,16 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 finding.diagnostic.span = Some(value);
                 finding.diagnostic.help.get_or_insert("for white light, write `color 1 1 1`".into());
             }
+        }
+        "sun-below" => finding.affects_whole_picture = is_only_light(scene_probe),
+        // The reader of environments reports a black one.
+        "bad-file" if finding.diagnostic.message.ends_with("is black: it emits no light") => {
+            finding.diagnostic.code = "black-sky";
+            finding.affects_whole_picture = is_only_light(scene_probe);
+            finding.diagnostic.effect = Some(match finding.affects_whole_picture {
+                true => "nothing else emits light, so the picture is black".into(),
+                false => "the environment emits no light and is invisible".into(),
+            });
         }
         "no-falloff" => finding.affects_whole_picture = true,
         "no-objects" => {
@@ -44,6 +55,15 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
         "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
         _ => {}
     }
+}
+
+/// Returns true if the scene has neither lights nor emissive surfaces nor a background, so that only
+/// its sky could emit light.
+fn is_only_light(scene_probe: &SceneProbe) -> bool {
+    let world = scene_probe.world();
+    world.lights().iter().all(|light| light.color() == Vec3::ZERO)
+        && super::area_lights::emissive_objects(scene_probe).is_empty()
+        && (world.background() == Vec3::ZERO || world.is_dark())
 }
 
 /// Adds help about placing objects. In the node grammar, the surrounding node places an object. In

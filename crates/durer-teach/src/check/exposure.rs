@@ -25,6 +25,11 @@ const MAX_WHITE: f32 = 0.5;
 /// Maximum fraction of white points on lit surfaces, regardless of the background.
 const MAX_WHITE_SURFACES: f32 = 0.8;
 
+/// Factor of the exposure below which the exposure can be the cause of a dark picture, and value
+/// before exposure above which there is ample light.
+const MAX_LOW_EXPOSURE: f32 = 0.25;
+const MIN_AMPLE: f32 = 0.1;
+
 /// Converts a ratio of luminances to stops.
 fn stops_of(factor: f32) -> f32 {
     fp::ln(factor) / std::f32::consts::LN_2
@@ -195,10 +200,25 @@ fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let most = brightest(scene_probe.exposed_colors());
     let message = match most < 1e-6 {
-        true => "the whole picture is black: no light reaches the camera".to_string(),
+        true => "nearly the whole picture is black: hardly any light reaches the camera".to_string(),
         false => format!("the brightest value in the picture is only {}", number(most)),
     };
     let factor = 0.6 / most.max(1e-9);
+    let exposure = scene_probe.input.exposure;
+    if exposure < MAX_LOW_EXPOSURE && most > MIN_AMPLE * exposure {
+        let diagnostic = Diagnostic::warning(format!(
+            "the exposure is too low: it multiplies the light by {}, so the brightest value is only {}",
+            number(exposure),
+            number(most)
+        ))
+        .effect("everything visible is black, or nearly black")
+        .help(format!(
+            "raise the exposure by about {} stops, with a slower shutter, a smaller f-number, a higher ISO value or a \
+             larger `--exposure`",
+            number(stops_of(factor).round())
+        ));
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
+    }
     let diagnostic = Diagnostic::warning(message).effect("everything visible is black, or nearly black");
     let light = super::area_lights::brightest(scene_probe).filter(|_| most > 1e-6);
     let diagnostic = match light {

@@ -21,13 +21,20 @@ const HARMFUL: f32 = 100.0;
 /// Size ratio above which an object that contains the camera is out of scale.
 const MAX_ENCLOSING_RATIO: f32 = 20.0;
 
+/// Field of view, in degrees, below which a part of one object is probably not meant to fill the
+/// picture.
+const VERY_NARROW: f32 = 2.0;
+
 /// Range of sizes that single precision can represent next to other objects.
 const REPRESENTABLE_SIZES: std::ops::Range<f32> = 1e-9..1e9;
 
 /// Reports scenes whose bounded objects together cover only a few pixels.
 pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
     let bounds = scene_probe.world().bounds();
-    let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scene_probe, bounds)) else {
+    // `degenerate-mesh` reports meshes that are a single point.
+    let Some(size) =
+        Some(bounds).filter(|b| !b.is_empty() && b.size() != Vec3::ZERO).and_then(|bounds| pixels(scene_probe, bounds))
+    else {
         return Vec::new();
     };
     let empty = scene_probe.hits().next().is_none();
@@ -88,6 +95,9 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
     if bounds.is_empty() {
         return Vec::new();
     }
+    if let Some(finding) = part_of_one_object(scene_probe, &sizes) {
+        return vec![finding];
+    }
     if sizes.iter().any(|size| *size < 3.0 * larger) {
         return filled_by_one_object(scene_probe, &sizes).into_iter().collect();
     }
@@ -128,6 +138,33 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Reports a very narrow field of view that a part of one object fills, while other objects are
+/// outside it.
+fn part_of_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
+    let Camera::Perspective(camera) = scene_probe.world().camera() else { return None };
+    let objects = scene_probe.world().objects();
+    let first = scene_probe.hits().next()?.1.object;
+    let whole = scene_probe.probes.iter().all(|probe| probe.hit.as_ref().is_some_and(|hit| hit.object == first));
+    let outside = scene_probe.visibilities().iter().zip(objects);
+    let outside = outside.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let part = sizes.iter().all(|size| *size > 3.0 * scene_probe.larger_side());
+    if camera.angle >= VERY_NARROW || !whole || !part || outside == 0 || objects[first as usize].bounds().is_none() {
+        return None;
+    }
+    let degrees = camera.angle.to_degrees();
+    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
+        .effect(format!(
+            "a part of one object fills the picture, and {} outside the picture",
+            super::finding::counted(outside, "object is", "objects are")
+        ))
+        .help(format!(
+            "angles are in degrees, and 30 to 60 degrees are usual; if this value is in radians, it is {} degrees",
+            number(degrees)
+        ));
+    let span = scene_probe.input.scene.camera_span;
+    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
 }
 
 /// Reports a narrow field of view that one object fills while most other objects are outside it.

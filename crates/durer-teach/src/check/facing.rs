@@ -6,8 +6,9 @@ use super::mesh_files::topology::Topology;
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
 use durer_diag::{Diagnostic, Severity};
-use durer_render::world::Object;
+use durer_render::world::{Material, Object};
 use durer_scene::describe::{DescribedKind as _, Value};
+use durer_scene::material::principled::Backs;
 use durer_scene::math::{Affine, Vec3};
 use durer_scene::shape::{Flip, Shape as _};
 
@@ -67,6 +68,9 @@ fn with_flip(scene_probe: &SceneProbe, diagnostic: Diagnostic, object: u32) -> D
 /// Reports objects that are seen only from behind. This is a warning if back faces are not shaded.
 /// Otherwise, it is a note for flat shapes, whose front was probably meant to be visible.
 pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() {
+        return black_backs(scene_probe);
+    }
     let shaded = scene_probe.input.job.settings.shade_back;
     let is_flat = |i: usize| course_flip(&scene_probe.world().objects()[i]).is_some();
     let count = scene_probe.world().objects().len();
@@ -87,6 +91,8 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
             && (!shaded || is_flat(i))
             && !super::mesh::is_inside_out_object(scene_probe, i as u32)
     });
+    let turned_away: Vec<usize> = turned_away.collect();
+    let whole = turned_away.iter().map(|&i| backs[i]).sum::<usize>() * 10 > all * 9;
     let say = |i: usize| {
         let message = format!("the {} is visible from behind", scene_probe.object(i as u32));
         if shaded {
@@ -110,9 +116,38 @@ pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
                 "the normal points away, so the visible side gets no light"
             })
             .help("set `--shade-back` (in the course's programs `-shade_back`)");
-        Finding::from(with_flip(scene_probe, diagnostic, i as u32)).affecting_whole_picture(backs[i] * 10 > all * 9)
+        Finding::from(with_flip(scene_probe, diagnostic, i as u32)).affecting_whole_picture(whole)
     };
-    turned_away.take(MAX_FINDINGS).map(say).collect()
+    turned_away.into_iter().take(MAX_FINDINGS).map(say).collect()
+}
+
+/// Reports objects that paths show only from behind, if their material is black there.
+fn black_backs(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let is_one_sided = |object: &Object| match world.materials().get(object.material as usize) {
+        Some(Material::Phong(phong)) => {
+            let own = phong.principled.as_ref().map(|principled| &principled.definition);
+            phong.emission.is_none() && own.is_some_and(|m| m.backs == Backs::Black && m.transmission_weight == 0.0)
+        }
+        _ => false,
+    };
+    let mut counts = vec![(0_usize, 0_usize); world.objects().len()];
+    for (_, hit) in scene_probe.hits() {
+        let (seen, backs) = &mut counts[hit.object as usize];
+        (*seen, *backs) = (*seen + 1, *backs + usize::from(hit.from_behind));
+    }
+    let all = scene_probe.hits().count();
+    let turned = world.objects().iter().zip(counts).enumerate();
+    let turned = turned.filter(|(_, (object, (seen, backs)))| *backs > 4 && backs == seen && is_one_sided(object));
+    let say = |(number, (_, (_, backs))): (usize, (&Object, (usize, usize)))| {
+        let number = number as u32;
+        let diagnostic = Diagnostic::warning(format!("the {} is visible from behind", scene_probe.object(number)))
+            .at(scene_probe.object_span(number))
+            .effect("the material of the object reflects light only on its front, so the visible side is black")
+            .help("turn the object over, or give the object a two-sided material");
+        Finding::from(diagnostic).affecting_whole_picture(backs * 2 > all)
+    };
+    turned.take(MAX_FINDINGS).map(say).collect()
 }
 
 /// Reports connected triangles in the scene file whose winding is opposite to that of most others.

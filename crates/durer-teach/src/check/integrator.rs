@@ -7,10 +7,10 @@ use super::finding::{Finding, percent};
 use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_formats::scene_format_for;
 use durer_render::integrator::IntegratorKind;
 use durer_render::world::Material;
-use durer_scene::math::{Color, Vec3};
+use durer_scene::light::{Illuminate as _, Light};
+use durer_scene::math::{Color, Ray, Vec3};
 use durer_scene::scene::Material as ParsedMaterial;
 
 /// Radiance below which a surface is black in an eight-bit picture.
@@ -45,7 +45,7 @@ pub(super) fn wrong_integrator(scene_probe: &SceneProbe) -> Vec<Finding> {
 pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
     let background = &scene_probe.input.scene.background;
     if scene_probe.world().environment().is_none() || background.environment_scale != Some(Vec3::ZERO) {
-        return Vec::new();
+        return black_model_sky(scene_probe).into_iter().collect();
     }
     let alone = scene_probe.world().lights().is_empty() && emissive_objects(scene_probe).is_empty();
     let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
@@ -60,11 +60,35 @@ pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(alone)]
 }
 
-/// Reports a path-traced picture in which nearly all surfaces are black although the scene contains
-/// lights.
-pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
-    if !scene_probe.is_physical() || scene_probe.is_dark() || scene_probe.world().fog().is_some() {
-        return Vec::new();
+/// Reports an environment light of a model whose colour or scale is 0. The reader keeps no trace of
+/// such a light, so the text of the file is searched for it.
+fn black_model_sky(scene_probe: &SceneProbe) -> Option<Finding> {
+    let world = scene_probe.world();
+    let words: &[&str] = match scene_probe.model_format()?.name {
+        "pbrt" => &["LightSource \"infinite\""],
+        "Mitsuba" => &["<emitter type=\"constant\"", "<emitter type=\"envmap\""],
+        _ => return None,
+    };
+    let lit = world.environment().is_some()
+        || world.background() != Color::ZERO
+        || world.lights().iter().any(|light| light.color() != Color::ZERO)
+        || !emissive_objects(scene_probe).is_empty();
+    if lit {
+        return None;
+    }
+    let place = words.iter().find_map(|word| super::model_text::find(scene_probe, word))?;
+    let diagnostic = Diagnostic::warning("the environment light is black: its colour times its scale is 0")
+        .at(place)
+        .effect("nothing else emits light, so the picture is black")
+        .help("give the environment a scale and a colour above 0");
+    Some(Finding::from(diagnostic).affecting_whole_picture(true))
+}
+
+/// Returns the number of black samples of reflecting surfaces and the number of all such samples if
+/// nearly all of them are black.
+fn black_samples(scene_probe: &SceneProbe) -> Option<(usize, usize)> {
+    if !scene_probe.is_physical() || scene_probe.world().fog().is_some() || scene_probe.lacks_photons() {
+        return None;
     }
     let world = scene_probe.world();
     let reflects = |hit: &ProbeHit| {
@@ -80,10 +104,79 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
         .filter_map(|(probe, color): (&Probe, Color)| probe.hit.as_ref().filter(|hit| reflects(hit)).map(|_| color));
     let (all, black) =
         own.fold((0, 0), |(all, black), color| (all + 1, black + usize::from(color.max_element() < BLACK)));
-    if all < MIN_SAMPLES || black * 10 < all * MIN_BLACK_TENTHS {
+    (all >= MIN_SAMPLES && black * 10 >= all * MIN_BLACK_TENTHS).then_some((black, all))
+}
+
+/// Reports directional lights without extent that reach the visible surfaces only through glass,
+/// where paths cannot find them.
+pub(super) fn behind_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let black = scene_probe.is_dark() || black_samples(scene_probe).is_some();
+    if !matches!(scene_probe.input.job.method, IntegratorKind::Path(_)) || !black {
         return Vec::new();
     }
-    let model = scene_probe.input.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
+    let refracts = |object: u32| match &world.materials()[world.objects()[object as usize].material as usize] {
+        Material::Phong(phong) => {
+            let layers = phong.principled.as_ref().map(|principled| &principled.definition);
+            phong.is_entered() && phong.ior != 1.0 && layers.is_none_or(|m| m.transmission_weight > 0.5)
+        }
+        Material::Mix(..) => false,
+    };
+    let mut findings = Vec::new();
+    for (number, light) in world.lights().iter().enumerate().take(super::finding::MAX_PER_KIND) {
+        let Light::Directional(own) = light else { continue };
+        if own.spread.is_some_and(|spread| spread > 0.0) || light.color() == Color::ZERO {
+            continue;
+        }
+        let (mut direct, mut through, mut panes) = (0, 0, Vec::new());
+        for (probe, hit) in scene_probe.hits().filter(|(_, hit)| !refracts(hit.object)) {
+            if hit.contribution(number).is_none_or(|lit| lit.cosine <= 0.0) {
+                continue;
+            }
+            let point = probe.ray.at(hit.t);
+            let to_light = light.illuminate(point.as_dvec3()).to_light;
+            let ray = Ray { t_min: 1e-3, ..Ray::new(point, to_light) };
+            let passed: Vec<u32> = world.all_hits(&ray).take(16).map(|hit| hit.object).collect();
+            match passed[..] {
+                [] => direct += 1,
+                [first, ..] if passed.iter().all(|object| refracts(*object)) => {
+                    through += 1;
+                    panes.push(first);
+                }
+                _ => {}
+            }
+        }
+        let Some(pane) = super::verdict::most_common(&panes).filter(|_| direct * 10 <= through) else { continue };
+        let Some(span) = super::lights::span(scene_probe, number) else { continue };
+        let help = match scene_probe.model_format() {
+            Some(_) => "use `--integrator photons`, or give the light an angular size",
+            None => {
+                "use `--integrator photons`, set `walls thin` in the material of the glass, or give the light an \
+                 angular radius with `spread`"
+            }
+        };
+        let diagnostic = Diagnostic::warning(format!(
+            "this light reaches the visible surfaces only through the {}, where paths cannot find the light",
+            scene_probe.object(pane)
+        ))
+        .at(span)
+        .related(scene_probe.object_span(pane), "this glass refracts the light")
+        .effect("a light without extent cannot be hit by a refracted path, so the surfaces behind the glass are black")
+        .help(help);
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
+    }
+    findings
+}
+
+/// Reports a path-traced picture in which nearly all surfaces are black although the scene contains
+/// lights.
+pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_dark() || !super::depth::limited(scene_probe).is_empty() || !behind_glass(scene_probe).is_empty()
+    {
+        return Vec::new();
+    }
+    let Some((black, all)) = black_samples(scene_probe) else { return Vec::new() };
+    let model = scene_probe.model_format().is_some();
     let diagnostic = Diagnostic::warning(format!(
         "{} of the visible surface area is black: the scene's lights do not reach it",
         percent(black, all)

@@ -3,10 +3,12 @@
 use super::finding::{Finding, MAX_FINDINGS, number as number_word, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
+use durer_render::world::Material;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
-use durer_scene::math::fp;
+use durer_scene::math::{Vec2, fp};
 use durer_scene::scene::{Material as ParsedMaterial, Spanned};
+use durer_scene::texture::Channel;
 
 /// Reflectances and transmittances below this value count as black.
 const BLACK: f32 = 0.002;
@@ -35,6 +37,10 @@ pub(super) fn thickness(scene_probe: &SceneProbe, material: usize) -> Option<f32
 
 /// Reports layered materials that reflect no light.
 pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
+    // The reader of a model without scattering makes all materials black.
+    if super::depth::emitters_only(scene_probe).is_some() {
+        return Vec::new();
+    }
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         if scene_probe.material_rays()[number] == 0 {
             return None;
@@ -79,7 +85,7 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let message = format!("material {number} is glass that transmits no light");
         let diagnostic = Diagnostic::warning(message);
-        let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin {
+        let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin || color <= BLACK {
             (color <= BLACK).then(|| {
                 let help =
                     "increase `transmissionColor`, the fraction of light that the glass transmits; `1 1 1` is clear";
@@ -143,9 +149,27 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
     layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
-/// Reports surfaces whose opacity is zero.
+/// Returns true if the opacity texture of a material is black everywhere.
+fn has_black_opacity(scene_probe: &SceneProbe, material: usize) -> bool {
+    let world = scene_probe.world();
+    let Some(Material::Phong(phong)) = world.materials().get(material) else { return false };
+    let map = phong.principled.as_ref().and_then(|principled| principled.maps.opacity);
+    let Some(texture) = map.and_then(|map| world.textures().get(map as usize)) else { return false };
+    let mapping = texture.mapping().cloned().unwrap_or_default();
+    let red = !texture.has_alpha() && matches!(mapping.channel, None | Some(Channel::Red));
+    red && texture.is_flat() && texture.texel(&mapping, Vec2::splat(0.5), 0.0)[0] == 0.0
+}
+
+/// Reports surfaces whose opacity is zero, or whose opacity texture is black.
 pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+        if has_black_opacity(scene_probe, number) {
+            let message = format!("the opacity texture of material {number} is black everywhere");
+            let diagnostic = Diagnostic::warning(message)
+                .effect("objects with this material are invisible: light passes through unchanged")
+                .help("use a texture that is white where the surface is present");
+            return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["opacityTexture"])));
+        }
         if m.opacity > 0.01 {
             return None;
         }

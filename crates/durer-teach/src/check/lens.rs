@@ -19,6 +19,9 @@ const MAX_SHARP_BLUR: f32 = 0.02;
 const MAX_APERTURE: f32 = 0.4;
 /// Aperture that few lenses exceed, as a fraction of the distance to the objects.
 const USUAL_MAX_APERTURE: f32 = 0.12;
+/// Ratio of an object's distance to the focus distance above which the lens focuses nowhere near the
+/// object.
+const FAR_FROM_FOCUS: f32 = 2.0;
 /// Eye separation above which the two images do not fuse, as a fraction of the distance.
 const MAX_SEPARATION: f32 = 0.5;
 
@@ -72,7 +75,12 @@ pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     depths.sort_by(f32::total_cmp);
     let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < USUAL_MAX_APERTURE * middle);
-    if all.is_empty() || camera.aperture < MAX_APERTURE * camera.focus_distance || sharp * 10 > all.len() || fits {
+    // If the lens focuses nowhere near the objects, a smaller aperture does not help either.
+    let near_focus =
+        |z: &f32| *z > camera.focus_distance / FAR_FROM_FOCUS && *z < camera.focus_distance * FAR_FROM_FOCUS;
+    let off = !depths.iter().any(near_focus);
+    let wide = camera.aperture >= MAX_APERTURE * camera.focus_distance;
+    if all.is_empty() || !wide || sharp * 10 > all.len() || fits || off {
         return Vec::new();
     }
     let mut sizes: Vec<f32> = all.iter().map(|(blur, _)| *blur).collect();

@@ -135,8 +135,6 @@ const MOSTLY_DARK: f32 = 0.33;
 /// A light is a fill light if it is weaker than this fraction of the strongest light.
 const FILL_LIGHT_RATIO: f32 = 0.15;
 
-/// Fraction of lit points below which only a rim of the objects is lit.
-const RIM: f32 = 0.2;
 /// Fraction of lit points below which almost everything is dark.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
@@ -186,8 +184,8 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     let message = format!("{} of the visible surfaces face away from {which}", percent(away, all));
     let mut diagnostic = Diagnostic::warning(message)
         .effect(match scene_probe.world().ambient().max_element() > VISIBLE {
-            true => "most of the picture shows only ambient light, flat and dark",
-            false => "most of the picture is black",
+            true => "most of the visible surface area shows only ambient light, flat and dark",
+            false => "most of the visible surface area is black",
         })
         .help(
             "change the `direction` in which the light travels, or its `position`: the light is behind the visible \
@@ -207,12 +205,9 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     let floor = scene_probe.hits().any(|(_, hit)| flat(hit.object));
     let lit_floor = scene_probe.hits().any(|(_, hit)| flat(hit.object) && hit.lights.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
+        // A crescent may be intentional, so no edit is offered.
         diagnostic.severity = Severity::Note;
-        // No edit is offered for a half-lit object. If only a thin rim is lit, a wrong sign is more
-        // likely.
-        if reached as f32 > RIM * all as f32 {
-            diagnostic.fix.clear();
-        }
+        diagnostic.fix.clear();
         return vec![Finding::from(diagnostic)];
     }
     vec![Finding::from(diagnostic).affecting_whole_picture((reached as f32) < NEARLY_ALL_DARK * all as f32)]

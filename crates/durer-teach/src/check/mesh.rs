@@ -26,7 +26,7 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         let diagnostic = diagnostic
-            .effect("triangles without area are invisible and leave holes in the surface")
+            .effect("triangles without area are never hit, so they are invisible")
             .help("remove the triangles, or correct vertices that have the same index or position");
         findings.push(Finding::from(diagnostic).affecting_whole_picture(flat.len() == all));
     }

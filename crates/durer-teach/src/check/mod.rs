@@ -11,9 +11,11 @@ mod area_lights;
 mod attenuation;
 mod beams;
 mod brightness;
+mod clipping;
 mod colors;
 mod completion;
 mod containment;
+mod depth;
 mod exposure;
 mod extent;
 mod faces;
@@ -28,7 +30,9 @@ mod lens;
 mod lights;
 mod mesh;
 mod mesh_files;
+mod model_text;
 mod names;
+mod neutral;
 mod numbers;
 mod objects;
 mod optics;
@@ -36,6 +40,7 @@ mod patterns;
 mod physical;
 pub mod picture;
 mod probes;
+mod quadrics;
 mod quirks;
 mod repair;
 mod scene_probe;
@@ -65,6 +70,7 @@ const EMPTY_PICTURE_CODES: [&str; 7] =
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
+    ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
     ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),
     ("mostly-black", &["too-dark", "lamp-blocked", "light-behind"]),
@@ -75,8 +81,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("light-twice", &["too-bright"]),
     ("light-divides", &["not-finite"]),
     ("no-falloff", &["not-finite", "light-divides"]),
-    ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "upside-down"]),
-    ("hidden-behind", &["upside-down"]),
+    ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "light-blocked", "upside-down"]),
+    ("hidden-behind", &["upside-down", "light-behind", "light-blocked"]),
     ("degenerate-mesh", &["seen-from-behind"]),
     ("squashed", &["all-missed", "too-small", "tiny", "out-of-scale", "empty-solid"]),
     ("degenerate-triangle", &["all-missed", "unseen", "same-place"]),
@@ -102,10 +108,12 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("thick-fog", &["too-dark", "lamp-turned", "lamp-blocked"]),
     ("wide-aperture", &["out-of-focus"]),
     ("eyes-apart", &["unseen", "camera-away"]),
+    ("clipped", &["camera-away", "all-missed", "unseen", "too-small", "too-narrow", "upside-down"]),
+    ("no-surface", &["far-origin", "too-small", "tiny", "out-of-scale", "all-missed"]),
     ("lamp-turned", &["too-dark", "lamp-blocked"]),
     ("lamp-blocked", &["unseen"]),
     ("light-near", &["too-dark", "too-bright", "light-faint"]),
-    ("unused-define", &["unused-material"]),
+    ("unused-define", &["unused-material", "no-objects"]),
     ("plane-normal", &["plane-through", "too-bright"]),
     ("same-parts", &["pattern-scale"]),
     ("empty-solid", &["one-color"]),
@@ -123,7 +131,11 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     findings.iter_mut().for_each(|finding| completion::complete(&scene_probe, finding));
     for check in CHECKS.iter().filter(|check| !physical::does_not_apply(&scene_probe, check.code)) {
         let of_kind = (check.find)(&scene_probe).into_iter();
-        findings.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
+        let coded = of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding });
+        match scene_probe.model_format() {
+            Some(_) => findings.extend(coded.map(neutral::neutral)),
+            None => findings.extend(coded),
+        }
     }
     // Drop findings that only describe the picture if another finding explains it.
     if findings.iter().any(|finding| finding.affects_whole_picture && !finding.only_describes) {

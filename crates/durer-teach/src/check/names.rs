@@ -25,7 +25,8 @@ pub(super) fn unused_define(scene_probe: &SceneProbe) -> Vec<Finding> {
         if unused.len() == defined.len() {
             diagnostic.severity = Severity::Warning;
         }
-        Finding::from(diagnostic)
+        let empty = scene_probe.world().objects().is_empty() && diagnostic.severity == Severity::Warning;
+        Finding::from(diagnostic).affecting_whole_picture(empty)
     };
     unused.iter().map(say).collect()
 }

@@ -1,7 +1,7 @@
 //! Checks for objects that are degenerate, squashed or duplicated.
 
 use super::faces::overlapping;
-use super::finding::{Finding, MAX_FINDINGS, number};
+use super::finding::{Finding, MAX_FINDINGS, number, vector};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
 use super::visibility::Visibility;
@@ -72,6 +72,7 @@ pub(super) fn without_surface(scene_probe: &SceneProbe) -> Vec<u32> {
             }
     });
     nothing.extend(without.map(|(i, _)| i as u32));
+    nothing.extend(super::quadrics::without_points(scene_probe));
     nothing
 }
 
@@ -84,7 +85,42 @@ pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
             .help("check for a subtracted part that covers the first part, and for parts that do not overlap");
         Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none())
     };
-    empty_solids(scene_probe).into_iter().map(say).collect()
+    empty_solids(scene_probe).into_iter().map(say).chain(empty_grids(scene_probe)).collect()
+}
+
+/// Reports grids whose spheres fill no cell.
+fn empty_grids(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let mut findings = Vec::new();
+    let mut all: Vec<&Written> = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects).collect();
+    while let Some(object) = all.pop().filter(|_| findings.len() < MAX_FINDINGS) {
+        match &object.node {
+            ObjectKind::Group(group) => all.extend(&group.objects),
+            ObjectKind::Transform(_, inner) => all.push(inner),
+            ObjectKind::Voxels(grid, balls) if !balls.is_empty() => {
+                let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
+                let filled = |own: &Object| match &own.geometry {
+                    Geometry::Mesh(tree) => tree.mesh.len() > 0,
+                    Geometry::Primitive(_) | Geometry::Solid(_) => true,
+                };
+                if world.objects().iter().find(is_it).is_some_and(filled) {
+                    continue;
+                }
+                let diagnostic = Diagnostic::warning("no cell of this `Grid` is filled")
+                    .at(object.span)
+                    .effect("the grid is invisible")
+                    .help(format!(
+                        "move a `rasterizeSphere` into the box from {} to {}, or make the sphere larger: a sphere \
+                         fills the cells whose centers are inside the sphere",
+                        vector(grid.min),
+                        vector(grid.max)
+                    ));
+                findings.push(Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none()));
+            }
+            _ => {}
+        }
+    }
+    findings
 }
 
 /// Reports objects that a transform makes flat or nearly flat.

@@ -87,6 +87,10 @@ pub(super) fn no_spectrum(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports glass and mirrors that need more bounces than the paths have.
 pub(super) fn short_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let limited = super::depth::limited(scene_probe);
+    if !limited.is_empty() {
+        return limited;
+    }
     let bounces = scene_probe.input.job.settings.bounces;
     let say = |(index, material, m): Used| {
         let rays = scene_probe.material_rays()[index];

@@ -8,6 +8,7 @@ use durer_render::world::{Geometry, Material, World};
 use durer_scene::material::{ColorNoise, PatternMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as ParsedMaterial;
+use durer_scene::texture::Mapping;
 
 /// Number of steps per pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
@@ -146,6 +147,11 @@ fn why_uniform(
     (cell > MAX_CELL_SIZE * size).then_some((message, help))
 }
 
+/// Returns true if a mapping gives all points the same texture coordinates.
+fn is_constant(mapping: &Mapping) -> bool {
+    mapping.transform.iter().all(|row| row[..2] == [0.0, 0.0])
+}
+
 /// Reports textures that show a single colour. Either the image has only one colour, or all
 /// vertices of a mesh have the same texture coordinates.
 pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
@@ -164,6 +170,11 @@ pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
             (
                 format!("the texture of material {number} has only one colour"),
                 "check whether the image is the right one",
+            )
+        } else if texture.mapping().is_some_and(is_constant) {
+            (
+                format!("the `uvTransform` of the texture of material {number} maps all points to one texel"),
+                "write `uvTransform { 1 0 0  0 1 0 }`, which leaves texture coordinates unchanged",
             )
         } else if let Some(object) = one_place {
             let name = scene_probe.text(object.span);

@@ -4,7 +4,6 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_formats::scene_format_for;
 use durer_render::integrator::IntegratorKind;
 use durer_render::world::Material as Compiled;
 use durer_scene::light::Illuminate as _;
@@ -23,7 +22,6 @@ const LOCAL_LIGHT_CHECKS: &[&str] = &[
     "no-exponent",
     "light-cancelled",
     "same-color",
-    "seen-from-behind",
 ];
 
 /// Codes of the local lighting checks that can explain a black path-traced picture.
@@ -65,6 +63,7 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
     });
+    let format = scene_probe.model_format();
     if let Some((number, material)) = emitter {
         let black = of(number as u32) == Color::ZERO;
         let message = match black {
@@ -72,6 +71,8 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
             false => format!("nothing emits light: no object uses the emissive material {number}"),
         };
         let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
+            true if format.is_some() => "increase the emission of the material",
+            false if format.is_some() => "give a shape the emissive material",
             true => {
                 "change `emissionColor`, which multiplies `emissionLuminance`; for example, `emissionColor 1 1 1` \
                  is white light"
@@ -85,7 +86,6 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
         true => "",
         false => "; `ambientLight` has no effect on paths",
     };
-    let format = scene_probe.input.files.name(0).and_then(scene_format_for);
     let (surface, help) = match format.and_then(|format| format.light_hint) {
         Some(words) => ("emissive surface", format!("{words}; lights that are reported as left out emit nothing")),
         None => (

@@ -3,6 +3,7 @@
 
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
+use durer_formats::{SceneFormat, scene_format_for};
 use durer_render::integrator::trace::TermKind;
 use durer_render::integrator::{IntegratorKind, RenderSettings, Tree};
 use durer_render::render::explain::{SceneNames, explain_ray};
@@ -166,6 +167,11 @@ impl<'a> ProbeGrid<'a> {
     /// Returns true if the job uses path tracing.
     pub(super) fn is_physical(&self) -> bool {
         self.input.job.method.path_options().is_some()
+    }
+
+    /// Returns the format of the scene file if it is a model and not in the scene language.
+    pub(super) fn model_format(&self) -> Option<&'static SceneFormat> {
+        self.input.files.name(0).and_then(scene_format_for)
     }
 
     /// Returns true if an object is transparent.

@@ -6,6 +6,7 @@ use super::mesh_files::{MeshFile, files};
 use super::probes::{CheckInput, Probe, ProbeGrid};
 use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
+use durer_render::world::Material;
 use durer_scene::math::Color;
 use std::ops::Deref;
 use std::sync::OnceLock;
@@ -81,9 +82,24 @@ impl<'a> SceneProbe<'a> {
         probes.iter().zip(colors).map(|(probe, color)| (&self.probes[*probe], *color))
     }
 
+    /// Returns true if photons may bring light that the samples of [`Self::exposed_colors`] lack.
+    pub(super) fn lacks_photons(&self) -> bool {
+        let focuses = |material: &Material| match material {
+            Material::Phong(phong) => {
+                let own = phong.principled.as_ref().map(|principled| &principled.definition);
+                phong.is_entered() || own.is_some_and(|m| m.base_metalness > 0.5 || m.transmission_weight > 0.0)
+            }
+            Material::Mix(..) => false,
+        };
+        self.input.job.method.prepares() && self.world().materials().iter().any(focuses)
+    }
+
     /// Returns true if a path-traced picture is black or nearly black.
     pub(super) fn is_dark(&self) -> bool {
-        self.is_physical() && !self.exposed_colors().is_empty() && brightest(self.exposed_colors()) < DARK
+        self.is_physical()
+            && !self.lacks_photons()
+            && !self.exposed_colors().is_empty()
+            && brightest(self.exposed_colors()) < DARK
     }
 
     /// Returns the mesh files of the scene.

@@ -4,8 +4,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    area_lights, attenuation, beams, colors, exposure, extent, facing, fog, hidden, integrator, invisible, layers,
-    lens, lights, mesh, names, numbers, objects, optics, patterns, physical, quirks, solid, view,
+    area_lights, attenuation, beams, clipping, colors, exposure, extent, facing, fog, hidden, integrator, invisible,
+    layers, lens, lights, mesh, names, numbers, objects, optics, patterns, physical, quadrics, quirks, solid, view,
 };
 
 /// A kind of finding, with its stable code and the function that searches for it. Each is a row of
@@ -51,11 +51,13 @@ checks! {
     "far-origin": "a scene so far from the origin that single precision cannot resolve its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program starts shadow rays", lens::below_epsilon;
     "camera-inside": "a camera inside an object", view::inside;
+    "clipped": "clip distances that cut away everything in the picture", clipping::clipped;
     "camera-away": "a camera that looks past everything", view::looks_elsewhere;
     "up-parallel": "a camera whose `up` is parallel to its `direction`", reported;
     "too-small": "objects that together are too small in the picture", extent::too_small;
     "too-narrow": "a picture that shows a tiny part of the scene", extent::too_narrow;
-    "empty-solid": "an empty solid", objects::empty_solid;
+    "no-surface": "a quadric whose equation has no real solution", quadrics::no_surface;
+    "empty-solid": "an empty solid or grid", objects::empty_solid;
     "idle-part": "a part of a solid without effect", solid::part_without_effect;
     "wide-aperture": "an aperture that is too large for a lens", lens::wide_aperture;
     "out-of-focus": "a lens that focuses where there is nothing", lens::out_of_focus;
@@ -72,13 +74,14 @@ checks! {
     // Lights.
     "wrong-integrator": "light of a kind that the integrator does not support", integrator::wrong_integrator;
     "black-sky": "an environment that is multiplied by 0", integrator::black_sky;
+    "sun-below": "a sun below the horizon", reported;
     "no-light": "no light", reported;
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
     "fog-away": "fog that no camera ray passes through", fog::away;
     "thick-fog": "fog that blocks all light", fog::thick_fog;
     "lamp-turned": "an area light that faces away from everything visible", area_lights::facing_away;
     "lamp-blocked": "an area light that is occluded from everything visible", area_lights::blocked;
-    "lamp-in-glass": "an area light inside glass, which paths hit only by chance", area_lights::in_glass;
+    "lamp-in-glass": "a light inside or behind glass, which paths find only by chance or never", area_lights::in_glass;
     "no-depth": "medium parameters that have no effect", physical::without_effect;
     "black-light": "a light without colour", reported;
     "light-divides": "a light whose falloff is zero, which causes a division by zero", attenuation::invalid_divisor;
@@ -105,7 +108,7 @@ checks! {
     "black-material": "a material that reflects no light", colors::black;
     "light-cancelled": "a light whose colour the materials do not reflect", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
-    "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
+    "no-bounces": "paths or secondary rays that end too early for mirrors, glass or indirect light", colors::no_bounces;
     "dull-glass": "glass whose colour absorbs all light", colors::opaque_glass;
     "nothing-mirrored": "mirrors that have nothing to reflect", integrator::nothing_mirrored;
     "thick-film": "a thin film that is too thick to show colours", optics::thick_film;

@@ -52,8 +52,14 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         // If back faces are not shaded, walls seen from behind are not those of a room.
         let backs = scene_probe.hits().filter(|(_, hit)| hit.object == object && hit.from_behind).count();
         let walls = !physical && !scene_probe.input.job.settings.shade_back && backs * 50 > rays;
-        let swallowed = super::extent::encloses_camera_wrongly(scene_probe, object) || is_alone(scene_probe, object);
-        if own * 100 < rays * 99 && !dark && !walls && !swallowed {
+        let wrong = super::extent::encloses_camera_wrongly(scene_probe, object);
+        // The scene is visible through clear glass.
+        if scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0 && !dark && !walls && !wrong {
+            continue;
+        }
+        let swallowed = wrong || is_alone(scene_probe, object);
+        let sealed = is_sealed(scene_probe, object, own);
+        if own * 100 < rays * 99 && !dark && !walls && !swallowed && !sealed {
             continue;
         }
         let Some(bounds) = scene_probe.world().objects()[object as usize].bounds() else { continue };
@@ -86,6 +92,15 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
     }
     findings
+}
+
+/// Returns true if the picture of paths is dark and shows no bounded object except an opaque object
+/// around the camera.
+fn is_sealed(scene_probe: &SceneProbe, object: u32, own: usize) -> bool {
+    let objects = scene_probe.world().objects();
+    let alone =
+        scene_probe.hits().all(|(_, hit)| hit.object == object || objects[hit.object as usize].bounds().is_none());
+    scene_probe.is_dark() && alone && own * 2 > scene_probe.probes.len() && !scene_probe.is_glass(object)
 }
 
 /// Returns true if an object that contains the camera is the only bounded object, is seen only from

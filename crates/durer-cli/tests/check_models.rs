@@ -1,0 +1,150 @@
+//! Tests the findings of `durer check` about model files: their causes, and their words, which must
+//! not be those of the scene language.
+
+mod common;
+
+use common::TestFolder;
+use serde_json::Value;
+
+/// Keywords of the scene language that no finding about a model may contain.
+const KEYWORDS: [&str; 8] = [
+    "baseColor",
+    "diffuseColor",
+    "`direction",
+    "MaterialIndex",
+    "walls thin",
+    "emissionLuminance",
+    "`center",
+    "`color",
+];
+
+const PBRT: &str = r#"Film "rgb" "integer xresolution" 100 "integer yresolution" 75
+Integrator "path" "integer maxdepth" 8
+Scale -1 1 1
+LookAt 2 3 8  0 0.8 0  0 1 0
+Camera "perspective" "float fov" 36
+WorldBegin
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 9 9 8 ]
+    Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+    Translate 1 5 2
+    Rotate 90 1 0 0
+    Shape "disk" "float radius" 0.8
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.48 ]
+Shape "trianglemesh" "integer indices" [ 0 2 1 0 3 2 ] "point3 P" [ -8 0 -8  8 0 -8  8 0 8  -8 0 8 ]
+AttributeBegin
+    Material "coateddiffuse" "rgb reflectance" [ 0.1 0.3 0.7 ] "float roughness" 0.1
+    Translate 0 1 0
+    Shape "sphere" "float radius" 1
+AttributeEnd
+"#;
+
+const MITSUBA: &str = r#"<scene version="3.0.0">
+  <integrator type="path"><integer name="max_depth" value="8"/></integrator>
+  <sensor type="perspective">
+    <float name="fov" value="36"/>
+    <transform name="to_world"><lookat origin="2,3,8" target="0,0.8,0" up="0,1,0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="100"/><integer name="height" value="75"/></film>
+  </sensor>
+  <shape type="rectangle">
+    <transform name="to_world"><rotate x="1" angle="90"/><translate x="1" y="5" z="2"/></transform>
+    <emitter type="area"><rgb name="radiance" value="7,7,6"/></emitter>
+  </shape>
+  <shape type="rectangle">
+    <transform name="to_world"><rotate x="1" angle="-90"/><scale value="8"/></transform>
+    <bsdf type="diffuse"><rgb name="reflectance" value="0.5,0.5,0.48"/></bsdf>
+  </shape>
+  <shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="1"/>
+    <bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1,0.3,0.7"/></bsdf></shape>
+</scene>
+"#;
+
+const RADIANCE: &str = "void plastic grey
+0
+0
+5 0.5 0.5 0.48 0 0
+void light lamp
+0
+0
+3 12 12 10
+grey polygon floor
+0
+0
+12  -4 -4 0   4 -4 0   4 4 0   -4 4 0
+grey sphere ball
+0
+0
+4 0 0 1 1
+lamp polygon panel
+0
+0
+12  -0.5 0.5 4   0.5 0.5 4   0.5 -0.5 4   -0.5 -0.5 4
+";
+
+/// Changes of correct models, each with the code of the first finding. An empty code means that
+/// there is no warning.
+const CASES: &[(&str, &str, &[(&str, &str)], &str)] = &[
+    ("pbrt", PBRT, &[], ""),
+    ("pbrt", PBRT, &[("\"integer maxdepth\" 8", "\"integer maxdepth\" 0")], "no-bounces"),
+    ("pbrt", PBRT, &[("Rotate 90", "Rotate -90")], "lamp-turned"),
+    ("pbrt", PBRT, &[("\"float fov\" 36", "\"float fov\" 0.6")], "too-narrow"),
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("AreaLightSource \"diffuse\" \"rgb L\" [ 9 9 8 ]", ""),
+            ("WorldBegin", "WorldBegin\nLightSource \"infinite\" \"rgb L\" [ 0.6 0.7 0.9 ] \"float scale\" 0"),
+        ],
+        "black-sky",
+    ),
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("AreaLightSource \"diffuse\" \"rgb L\" [ 9 9 8 ]", ""),
+            ("WorldBegin", "WorldBegin\nLightSource \"point\" \"rgb I\" [ 0.05 0.05 0.05 ] \"point3 from\" [ 2 4 3 ]"),
+        ],
+        "light-faint",
+    ),
+    ("pbrt", PBRT, &[("[ 0.5 0.5 0.48 ]", "[ 0 0 0 ]")], "black-material"),
+    ("xml", MITSUBA, &[], ""),
+    ("xml", MITSUBA, &[("name=\"max_depth\" value=\"8\"", "name=\"max_depth\" value=\"1\"")], "no-bounces"),
+    ("xml", MITSUBA, &[("angle=\"90\"", "angle=\"-90\"")], "lamp-turned"),
+    ("xml", MITSUBA, &[("angle=\"-90\"", "angle=\"90\"")], "seen-from-behind"),
+    ("rad", RADIANCE, &[], ""),
+    (
+        "rad",
+        RADIANCE,
+        &[("-0.5 0.5 4   0.5 0.5 4   0.5 -0.5 4   -0.5 -0.5 4", "-0.5 -0.5 4   0.5 -0.5 4   0.5 0.5 4   -0.5 0.5 4")],
+        "lamp-turned",
+    ),
+];
+
+#[test]
+fn causes_in_models_are_reported_first_and_in_neutral_words() {
+    let folder = TestFolder::new();
+    let mut wrong = Vec::new();
+    for (number, (extension, text, changes, expected)) in CASES.iter().enumerate() {
+        let mut changed = text.to_string();
+        for (old, new) in *changes {
+            assert!(changed.contains(old), "{old}");
+            changed = changed.replacen(old, new, 1);
+        }
+        let name = format!("{number}.{extension}");
+        folder.write(&name, changed);
+        let output = folder.run(&format!("check {name} --json"));
+        let json: Value = serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{error}: {}", output.err));
+        let findings = json["scenes"][0]["findings"].as_array().unwrap();
+        let first = findings.iter().find(|finding| finding["severity"] != "note");
+        let code = first.map_or("", |finding| finding["code"].as_str().unwrap());
+        if code != *expected {
+            wrong.push(format!("{name} {changes:?}: {code} instead of {expected}"));
+        }
+        for finding in findings {
+            let text = ["message", "effect", "help"].map(|field| finding[field].as_str().unwrap_or_default()).join(" ");
+            wrong.extend(KEYWORDS.iter().filter(|word| text.contains(**word)).map(|word| format!("{word}: {text}")));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

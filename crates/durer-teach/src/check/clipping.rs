@@ -1,0 +1,86 @@
+//! Checks the clip distances of the camera.
+
+use super::finding::{Finding, number};
+use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
+use durer_diag::Diagnostic;
+use durer_scene::camera::Camera;
+use durer_scene::math::Ray;
+
+/// Minimum fraction of the rays that must hit something without the clip distances.
+const MIN_FREE_SHARE: f32 = 0.01;
+
+/// Returns the clip distances of the camera, near and far, if it has any.
+fn clip_distances(camera: &Camera) -> Option<(Option<f32>, Option<f32>)> {
+    let (near, far) = match camera {
+        Camera::Orthographic(camera) => (camera.near, None),
+        Camera::ThinLens(camera) => (Some(camera.near).filter(|near| *near > 0.0), camera.far),
+        _ => (None, None),
+    };
+    (near.is_some() || far.is_some()).then_some((near, far))
+}
+
+/// Reports clip distances that cut away everything in the picture.
+pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let Some((near, far)) = clip_distances(world.camera()) else { return Vec::new() };
+    if scene_probe.hits().next().is_some() || scene_probe.visibilities().contains(&Visibility::Visible) {
+        return Vec::new();
+    }
+    let orthographic = matches!(world.camera(), Camera::Orthographic(_));
+    let forward = world.camera_frame().forward;
+    let start = if orthographic { f32::NEG_INFINITY } else { 0.0 };
+    let free = scene_probe.probes.iter().filter_map(|probe| {
+        let hit = world.closest(&Ray { t_min: start, t_max: f32::INFINITY, ..probe.ray }, &mut ())?;
+        let bounded = world.objects()[hit.object as usize].bounds().is_some();
+        Some((hit.t * probe.ray.dir.dot(forward), bounded))
+    });
+    let free: Vec<(f32, bool)> = free.collect();
+    if free.is_empty() || (free.len() as f32) < MIN_FREE_SHARE * scene_probe.probes.len() as f32 {
+        return Vec::new();
+    }
+    // The distances of a plane reach to the horizon, so bounded objects are preferred.
+    let any_bounded = free.iter().any(|(_, bounded)| *bounded);
+    let depths = || free.iter().filter(|(_, bounded)| *bounded || !any_bounded).map(|(depth, _)| *depth);
+    let (least, most) = (depths().fold(f32::INFINITY, f32::min), depths().fold(f32::NEG_INFINITY, f32::max));
+    let low = if least > 0.0 { 0.9 * least } else { least - 0.1 * (most - least).max(least.abs()) };
+    let span = scene_probe.input.scene.camera_span;
+    let place = |field: &str| scene_probe.field_span(span, &[field]);
+    let (message, help, field, edits) = match (near, far) {
+        (Some(near), Some(far)) if near > far => {
+            let message = format!(
+                "the `near` distance {} is greater than the `far` distance {}, so everything is cut away",
+                number(near),
+                number(far)
+            );
+            let fits = far < most && near > least;
+            let (low, high) = if fits { (far, near) } else { (low, 1.1 * most) };
+            let help = format!("write `near {} far {}`", number(low), number(high));
+            (message, help, "near", vec![("near", number(low)), ("far", number(high))])
+        }
+        (_, Some(far)) if far < least => {
+            let message = format!("the `far` distance {} cuts away everything in the picture", number(far));
+            let help = format!("write `far {}`, or remove `far`", number(1.1 * most));
+            (message, help, "far", vec![("far", number(1.1 * most))])
+        }
+        (Some(near), _) if near > most => {
+            let message = format!("the `near` distance {} cuts away everything in the picture", number(near));
+            let help = format!("write `near {}`, or remove `near`", number(low));
+            (message, help, "near", vec![("near", number(low))])
+        }
+        _ => {
+            let message = "the clip distances of the camera cut away everything in the picture".to_string();
+            (message, "remove `near` and `far`".to_string(), "near", Vec::new())
+        }
+    };
+    let objects = match least == most {
+        true => format!("the visible objects would be at a distance of {}", number(least)),
+        false => format!("the visible objects would be at distances from {} to {}", number(least), number(most)),
+    };
+    let diagnostic = Diagnostic::warning(message)
+        .effect(format!("the picture shows only the background: {objects} along the camera's axis"))
+        .help(help);
+    let diagnostic =
+        edits.into_iter().fold(diagnostic, |diagnostic, (field, text)| diagnostic.fix_at(place(field), text));
+    vec![Finding::from(scene_probe.at_value(diagnostic, span, &[field, "far"])).affecting_whole_picture(true)]
+}
