@@ -251,7 +251,10 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Detects parts of the picture that are darker or brighter while the rest is equal.
+/// Fraction of the pixels below which other differences are not mentioned.
+const MAX_EQUAL_SHARE: f64 = 0.001;
+
+/// Detects parts of the picture that are darker or brighter while the rest is equal, or nearly so.
 fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let total = difference(samples);
     let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(is_visible).copied().partition(brighter);
@@ -275,13 +278,18 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     };
     // Differences in shadows, lights, and highlights look like this, and so do missing rays.
     let cause = "the pictures alone do not show the cause; pass `--scene` to try common mistakes";
-    let by = if fits && kind != "black-parts" { format!(" by a factor of {factor:.3}") } else { String::new() };
+    let by = if fits && kind != "black-parts" { format!(" by a mean factor of {factor:.3}") } else { String::new() };
     let share = part.len() as f64 / samples.len() as f64;
     // If nearly everything differs and no factor fits, the difference is not confined to a part of
     // the picture.
     if share > 0.75 && !fits {
         return None;
     }
-    let words = format!("{:.1} % of the picture is {how}{by}, and the rest is equal: {cause}", 100.0 * share);
+    let others = samples.iter().filter(is_visible).count() - part.len();
+    let rest = match others as f64 / samples.len() as f64 {
+        share if share < MAX_EQUAL_SHARE => "the rest is equal".to_string(),
+        share => format!("{:.1} % differs otherwise", 100.0 * share),
+    };
+    let words = format!("{:.1} % of the picture is {how}{by}, and {rest}: {cause}", 100.0 * share);
     Some(Finding { kind, description: words, explained })
 }

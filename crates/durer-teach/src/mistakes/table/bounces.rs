@@ -260,7 +260,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "secondary-diffuse",
         "reflection",
-        "{mirrors|glass|mirrors and glass} scale{|s|} light by the diffuse colour instead of the specular one",
+        "{mirrored light is|transmitted light is|mirrored and transmitted light are} scaled by the diffuse colour instead \
+         of the specular one",
         "color += ks * trace(...)",
         "color += kd * trace(...)",
         |v, which| {

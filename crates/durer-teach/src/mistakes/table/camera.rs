@@ -13,8 +13,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "pixel-corner",
         "rays",
         "rays pass through the corners of pixels instead of their centers",
-        "x = (i + 0.5) / n",
-        "x = i / n",
+        "x = (i + 0.5) / n, y = (j + 0.5) / m",
+        "x = {i|(i + 1)|i|(i + 1)} / n, y = {j|j|(j + 1)|(j + 1)} / m",
         |v, corner| v.camera_bugs.sample_position = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
@@ -38,7 +38,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "border-pixels",
         "rays",
         "the first and last pixels are centered on the picture's border instead of inside it, or the reverse",
-        "as in that year's program: (i + 0.5) / n, or i / (n - 1)",
+        "as in the scene's dialect: (i + 0.5) / n, or i / (n - 1)",
         "the other",
         |v, _| v.toggle(Quirk::BorderPixels),
     ),
@@ -46,7 +46,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "stretch",
         "rays",
         "a non-square picture is stretched instead of cropped, or the reverse",
-        "as in that year's program: both axes in units of the larger side, or each in its own",
+        "as in the scene's dialect: both axes in units of the larger side, or each in its own",
         "the other",
         |v, _| v.toggle(Quirk::Stretch),
     ),
@@ -123,7 +123,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "up-not-orthogonal",
         "rays",
         "the camera's up is made perpendicular to its direction although it should not be, or the reverse",
-        "as in that year's program: v = cross(u, w), or `up` as written",
+        "as in the scene's dialect: v = cross(u, w), or `up` as written",
         "the other",
         |v, _| {
             let raw = v.world.camera_rules().up != UpRule::Perpendicular;

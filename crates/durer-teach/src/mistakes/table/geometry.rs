@@ -171,7 +171,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "distance",
         "triangles are parallelograms: the test b + c <= 1 is missing",
         "b >= 0 && c >= 0 && b + c <= 1",
-        "b >= 0 && c >= 0",
+        "b >= 0 && c >= 0 && b <= 1 && c <= 1",
         |v, _| v.parallelograms(),
     ),
     row(
@@ -221,7 +221,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "black-backs",
         "diffuse",
         "back faces are black although they should not be, or the reverse",
-        "as in that year's program",
+        "as in the scene's dialect",
         "the reverse",
         |v, _| v.toggle(Quirk::BlackBacks),
     ),

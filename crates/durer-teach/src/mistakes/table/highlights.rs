@@ -18,7 +18,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlights-added",
         "specular",
-        "there are highlights, which this year's program lacks ({by R.L|by R.L, where N.L > 0|by N.H})",
+        "there are highlights, which the scene's dialect lacks ({by R.L|by R.L, where N.L > 0|by N.H})",
         "(nothing)",
         "color += ks * pow(max(0, R.L), s) * I",
         |v, model| v.add_highlights(model),
@@ -90,7 +90,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "other-model",
         "specular",
         "the highlights use the other model: Phong's (R.L) instead of Blinn's (N.H), or the reverse",
-        "as in that year's program: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
+        "as in the scene's dialect: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
         "the other",
         |v, _| v.swap_highlight_model(),
     ),
@@ -140,8 +140,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-behind",
         "specular",
-        "highlights on surfaces that face away from the light are present although that year has none, or the reverse",
-        "as in that year's program: with or without `if (dot(N, L) > 0)`",
+        "highlights on surfaces that face away from the light are present although the dialect has none, or the reverse",
+        "as in the scene's dialect: with or without `if (dot(N, L) > 0)`",
         "the reverse",
         |v, _| {
             v.phongs(|phong| {

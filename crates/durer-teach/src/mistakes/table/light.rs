@@ -35,7 +35,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "ambient-textured",
         "diffuse",
         "the ambient light is multiplied by the texture (or noise) instead of the diffuse colour, or vice versa",
-        "as in that year's program: ambient * texel, or ambient * diffuseColor",
+        "as in the scene's dialect: ambient * texel, or ambient * diffuseColor",
         "the other one",
         |v, _| v.phongs(|phong| phong.ambient = phong.ambient.xor(Some(phong.diffuse))),
     ),
@@ -214,7 +214,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "diffuse",
         "light fades with the distance instead of its square",
         "I = color / (a0 + a1 d + a2 d^2)",
-        "I = color / (a0 + a2 d)",
+        "I = color / (a0 + a1 d + a2 d)",
         |v, _| {
             points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x, a.z + a.y, 0.0)));
         },
@@ -247,8 +247,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "falloff-without-one",
         "diffuse",
         "the falloff's constant is left out",
-        "I = color / (1 + f d^2)",
-        "I = color / (f d^2)",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "the same formula without its constant",
         |v, _| {
             points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(0.0, a.y, a.z)));
         },
@@ -257,8 +257,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "falloff-with-one",
         "diffuse",
         "1 is added to the falloff",
-        "I = color / (f d^2)",
-        "I = color / (1 + f d^2)",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / (1 + a0 + a1 d + a2 d^2)",
         |v, _| {
             points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x + 1.0, a.y, a.z)));
         },
@@ -407,7 +407,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-over-pi",
         "diffuse",
-        "the diffuse term is divided by pi, unlike in this year's program",
+        "the diffuse term is divided by pi, unlike in the scene's dialect",
         "color += kd * max(0, N.L) * I",
         "color += kd / pi * max(0, N.L) * I",
         |v, _| v.bugs.cosine = Cosine::OverPi,

@@ -12,7 +12,7 @@ mod shadows;
 use super::SceneVariant;
 use super::variant::three_factors;
 use durer_scene::dialect::{DialectRules, Falloff, Highlight};
-use durer_scene::scene::Scene;
+use durer_scene::scene::{Material, Scene};
 
 /// A mistake that is common in student programs, with its description, its code, and a function
 /// that applies it.
@@ -138,7 +138,14 @@ impl Formulas {
             Falloff::InverseSquare(_) => "f d^2",
             Falloff::None => ATTENUATION,
         };
-        Formulas { fading, highlight: if rules.highlight == Highlight::Phong { "R.L" } else { "N.H" } }
+        let phong = match rules.highlight {
+            Highlight::Phong => true,
+            Highlight::ByKeyword => scene.materials.iter().any(
+                |material| matches!(&material.value, Material::Phong(phong, _) if phong.exponent.is_none() && phong.shininess.is_some()),
+            ),
+            Highlight::None | Highlight::Blinn => false,
+        };
+        Formulas { fading, highlight: if phong { "R.L" } else { "N.H" } }
     }
 }
 
