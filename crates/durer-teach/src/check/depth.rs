@@ -12,7 +12,7 @@ use durer_scene::scene::Material;
 const MANY_BOUNCES: u32 = 8;
 /// A surface is black below `BLACK` and visible above `VISIBLE`.
 const BLACK: f32 = 0.001;
-const VISIBLE: f32 = 0.02;
+const VISIBLE: f32 = 0.005;
 /// Fraction of the surface samples that must become visible through indirect light.
 const MIN_INDIRECT: f32 = 0.6;
 
