@@ -158,6 +158,9 @@ pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
         _ => format!("uniformly {}", vector(first)),
     };
     let empty = scene_probe.hits().next().is_none();
+    if !empty && scene_probe.lacks_photons() {
+        return Vec::new();
+    }
     // Probes can miss small visible objects.
     if empty && scene_probe.visibilities().contains(&super::visibility::Visibility::Visible) {
         return Vec::new();

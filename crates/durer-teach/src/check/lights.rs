@@ -2,7 +2,7 @@
 
 use super::containment::containing_objects;
 use super::finding::{Finding, percent, vector};
-use super::probes::LightContribution;
+use super::probes::{LightContribution, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::shapes::point;
 use super::verdict::{GRAZING, LightVerdict, MAX_LIGHTS, VISIBLE, most_common};
@@ -161,7 +161,9 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     };
     // If back faces are not shaded, the light is not to blame for a dark back face.
     let shaded = scene_probe.input.job.settings.shade_back;
-    for (_, hit) in scene_probe.hits().filter(|(_, hit)| shaded || !hit.from_behind) {
+    // Glass shows what is behind it.
+    let shows = |hit: &ProbeHit| (shaded || !hit.from_behind) && !scene_probe.is_glass(hit.object);
+    for (_, hit) in scene_probe.hits().filter(|(_, hit)| shows(hit)) {
         all += 1;
         reached += usize::from(hit.lights.iter().any(&bright));
         let faces_away = hit.lights.iter().filter(is_main).all(|lit| lit.cosine <= GRAZING);
