@@ -78,6 +78,7 @@ const MISTAKES: &[Mistake] = &[
     ("eta-squared-divided", Rows(&[("path-eta-squared", 1.0)]), &["glass nee"]),
     ("eta-squared-multiplied", Rows(&[("path-eta-squared", 2.0)]), &["glass nee"]),
     ("index-inverted", Rows(&[("path-refraction", 0.0)]), &["glass nee"]),
+    ("index-inverted-ends", Rows(&[("path-refraction", 0.0)]), &["glass nee"]),
     ("bent-back", Rows(&[("path-refraction", 1.0)]), &["glass nee"]),
     ("not-bent", Rows(&[("path-refraction", 2.0)]), &["glass nee"]),
     ("throughput-kept", Rows(&[("path-throughput", 0.0)]), &["box nee", "floor nee"]),

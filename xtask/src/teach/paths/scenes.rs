@@ -261,7 +261,8 @@ impl PathScene {
                 }
                 Matter::Metal(color, alpha) => writeln!(
                     t,
-                    "  PrincipledMaterial {{ baseColor {} baseMetalness 1 specularRoughness {} energyCompensation off }}",
+                    "  PrincipledMaterial {{ baseColor {} baseMetalness 1 specularRoughness {} \
+                     energyCompensation off }}",
                     v(color),
                     alpha.sqrt()
                 ),

@@ -355,12 +355,14 @@ impl<'s> PathTracer<'s> {
         let n = if enters { hit.n } else { -hit.n };
         let right = if enters { 1.0 / ior } else { ior };
         let cosine = -d.dot(n);
-        let eta = if self.is("index-inverted") { 1.0 / right } else { right };
+        let inverted = matches!(self.mistake, "index-inverted" | "index-inverted-ends");
+        let eta = if inverted { 1.0 / right } else { right };
         let along = (d + n * cosine) * eta;
         let root = 1.0 - along.dot(along);
         let reflects = random.next() < fresnel(cosine, right) && !self.is("x-no-fresnel");
         if reflects || root <= 0.0 {
-            return (mirrored(d, n), Vec3::ONE);
+            let ends = !reflects && self.is("index-inverted-ends");
+            return (mirrored(d, n), if ends { Vec3::ZERO } else { Vec3::ONE });
         }
         let through = match self.mistake {
             "bent-back" => -along - n * root.sqrt(),
