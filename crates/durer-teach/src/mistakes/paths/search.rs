@@ -198,13 +198,13 @@ fn of_noise(ratio: f64) -> String {
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISE_RATIO {
         format!(
-            "the mean is correct, but the noise has {} times the variance of the reference (fewer samples, or lights \
+            "no difference of the mean can be measured, but the noise has {} times the variance of the reference (fewer samples, or lights \
              that paths hit only by chance)",
             times(ratio)
         )
     } else if 1.0 / ratio > NOISE_RATIO {
         format!(
-            "the mean is correct, but the noise of the reference has {} times the variance (the reference has fewer \
+            "no difference of the mean can be measured, but the noise of the reference has {} times the variance (the reference has fewer \
              samples)",
             times(1.0 / ratio)
         )
