@@ -80,7 +80,6 @@ const MENDED: [&str; 32] = [
     "extra-brace",
     "hidden-behind.floor",
     "hidden-behind.wall",
-    "light-behind.direction",
     "light-divides",
     "light-faint.attenuation",
     "light-faint.f23",

@@ -222,5 +222,5 @@ def test_meshes_are_refitted_and_objects_moved():
     there = np.diag([1, 2, 1, 1.0])
     scene = durer.Scene([mesh, (mesh, np.eye(4))]).move({1: there})
     assert (scene.closest(o, d).t == durer.Scene([mesh, (mesh, there)]).closest(o, d).t).all()
-    with pytest.raises(ValueError, match="there is no object 2 among 2"):
+    with pytest.raises(ValueError, match="there is no object 2: the scene has 2 objects"):
         scene.move({2: there})

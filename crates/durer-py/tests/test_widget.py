@@ -114,7 +114,7 @@ def test_widget_in_kernel(scenes, tmp_path):
     [shown] = notebook.cells[0].outputs
     view = shown["data"]["application/vnd.jupyter.widget-view+json"]
     state = notebook.metadata.widgets["application/vnd.jupyter.widget-state+json"]["state"][view["model_id"]]
-    assert "model.send({ turn, nearer, ask })" in state["state"]["_esm"] and state["buffers"][0]["path"] == ["picture"]
+    assert "model.send({ turn, zoom, ask })" in state["state"]["_esm"] and state["buffers"][0]["path"] == ["picture"]
     assert "camera ray to Sphere" in notebook.cells[1].outputs[0]["data"]["text/plain"]
 
 

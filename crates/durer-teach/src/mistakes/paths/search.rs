@@ -192,20 +192,20 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
     energy(test) / energy(reference)
 }
 
-/// Describes how the noise of two pictures with the same mean differs. `ratio` is the variance of
+/// Describes how the noise of two pictures differs if their means do not. `ratio` is the variance of
 /// the test picture divided by that of the reference.
 fn of_noise(ratio: f64) -> String {
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISE_RATIO {
         format!(
-            "no difference of the mean can be measured, but the noise has {} times the variance of the reference (fewer samples, or lights \
-             that paths hit only by chance)",
+            "no difference of the mean can be measured, but the noise has {} times the variance of the reference \
+             (fewer samples, or lights that paths hit only by chance)",
             times(ratio)
         )
     } else if 1.0 / ratio > NOISE_RATIO {
         format!(
-            "no difference of the mean can be measured, but the noise of the reference has {} times the variance (the reference has fewer \
-             samples)",
+            "no difference of the mean can be measured, but the noise of the reference has {} times the variance \
+             (the reference has fewer samples)",
             times(1.0 / ratio)
         )
     } else {
