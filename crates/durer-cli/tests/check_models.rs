@@ -82,9 +82,12 @@ lamp polygon panel
 12  -0.5 0.5 4   0.5 0.5 4   0.5 -0.5 4   -0.5 -0.5 4
 ";
 
+/// Extension of a model, its text, replacements in the text, and the expected code.
+type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static str);
+
 /// Changes of correct models, each with the code of the first finding. An empty code means that
 /// there is no warning.
-const CASES: &[(&str, &str, &[(&str, &str)], &str)] = &[
+const CASES: &[Case] = &[
     ("pbrt", PBRT, &[], ""),
     ("pbrt", PBRT, &[("\"integer maxdepth\" 8", "\"integer maxdepth\" 0")], "no-bounces"),
     ("pbrt", PBRT, &[("Rotate 90", "Rotate -90")], "lamp-turned"),

@@ -7,8 +7,8 @@ use durer_diag::Span;
 pub(super) fn find(scene_probe: &SceneProbe, wanted: &str) -> Option<Span> {
     let bytes = scene_probe.input.files.bytes(0)?;
     let wanted = wanted.as_bytes();
-    let found = bytes.windows(wanted.len()).enumerate().filter(|(_, text)| *text == wanted).map(|(at, _)| at);
-    let place = found.filter(|at| !is_comment(&bytes[..*at])).last()?;
+    let mut found = bytes.windows(wanted.len()).enumerate().filter(|(_, text)| *text == wanted).map(|(at, _)| at);
+    let place = found.rfind(|at| !is_comment(&bytes[..*at]))?;
     Some(Span { file: 0, start: place as u32, end: (place + wanted.len()) as u32 })
 }
 

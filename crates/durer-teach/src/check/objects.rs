@@ -100,7 +100,7 @@ fn empty_grids(scene_probe: &SceneProbe) -> Vec<Finding> {
             ObjectKind::Voxels(grid, balls) if !balls.is_empty() => {
                 let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
                 let filled = |own: &Object| match &own.geometry {
-                    Geometry::Mesh(tree) => tree.mesh.len() > 0,
+                    Geometry::Mesh(tree) => !tree.mesh.is_empty(),
                     Geometry::Primitive(_) | Geometry::Solid(_) => true,
                 };
                 if world.objects().iter().find(is_it).is_some_and(filled) {
