@@ -152,7 +152,7 @@ impl FolderSource {
             false => {
                 let mut tried: Vec<PathBuf> = Vec::new();
                 for candidate in candidates {
-                    // The same folder can be in the search path twice, once with a leading `.`.
+                    // Skip a folder that is in the search path twice, once with a leading `.`.
                     if !tried.iter().any(|known| same_place(known, &candidate)) {
                         tried.push(candidate);
                     }
@@ -250,13 +250,8 @@ fn or_current(folder: &Path) -> &Path {
 
 /// Returns true if two paths are equal except for components `.`.
 fn same_place(a: &Path, b: &Path) -> bool {
-    let parts = |path: &'_ Path| {
-        path.components()
-            .filter(|part| *part != Component::CurDir)
-            .map(|part| part.as_os_str().to_owned())
-            .collect::<Vec<_>>()
-    };
-    parts(a) == parts(b)
+    let [a, b] = [a, b].map(|path| path.components().filter(|part| *part != Component::CurDir));
+    a.eq(b)
 }
 
 /// Decodes percent escapes; returns the name unchanged if an escape is malformed.

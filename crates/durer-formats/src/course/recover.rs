@@ -16,26 +16,27 @@ impl Reader<'_, '_> {
             self.unclosed_at = Some(self.at);
             let span = self.peek().map_or(self.end_span(), |t| t.span);
             let message = format!("`{}` is not allowed in `{}`", self.text(span), self.text(block));
-            let error = Diagnostic::error(message).code("unclosed-block").at(span);
-            let (before, brace) = (Span { end: span.start, ..span }, "}\n");
-            let error = error.label("a `}` is probably missing before this word").fix(before, brace);
-            self.error(error.related(block, "opened here"));
+            self.report_unclosed(block, span, message);
         }
     }
 
+    /// Reports that the `}` of a block is probably missing before a word. `message` says why the
+    /// word cannot be in the block.
+    fn report_unclosed(&mut self, block: Span, word: Span, message: impl Into<String>) {
+        let error = Diagnostic::error(message).code("unclosed-block").at(word);
+        let error = error.label("a `}` is probably missing before this word");
+        self.error(error.fix(Span { end: word.start, ..word }, "}\n").related(block, "opened here"));
+    }
+
     /// Ends the innermost block before the word that was read last, if that word begins a line with
-    /// the same indentation as the block. In that case, the `}` of the block is probably missing.
-    /// `message` says why the word cannot be in the block.
+    /// the same indentation as the block. `message` says why the word cannot be in the block.
     pub(super) fn unclosed_by_indentation(&mut self, message: &str) -> bool {
         let (Some(&block), span) = (self.blocks.last(), self.last_span()) else { return false };
         if self.indentation(span).is_none() || self.indentation(span) != self.indentation(block) {
             return false;
         }
         self.blocks.pop();
-        let error = Diagnostic::error(message).code("unclosed-block").at(span);
-        let error = error.label("a `}` is probably missing before this word");
-        let before = Span { end: span.start, ..span };
-        self.error(error.fix(before, "}\n").related(block, "opened here"));
+        self.report_unclosed(block, span, message);
         self.step_back();
         true
     }

@@ -68,8 +68,7 @@ fn names_keyword(text: &str) -> bool {
 
 /// Replaces the keywords of the scene language in a finding about a model, and removes edits, which
 /// would insert such keywords.
-pub(super) fn neutral(finding: Finding) -> Finding {
-    let mut finding = finding;
+pub(super) fn neutral(mut finding: Finding) -> Finding {
     let diagnostic = &mut finding.diagnostic;
     let reword = |text: &mut String| WORDS.iter().for_each(|(word, neutral)| *text = text.replace(word, neutral));
     reword(&mut diagnostic.message);

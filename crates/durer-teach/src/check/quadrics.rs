@@ -5,6 +5,7 @@ use super::scene_probe::SceneProbe;
 use super::shapes::shape;
 use durer_diag::Diagnostic;
 use durer_render::world::Object;
+use durer_scene::math::Vec3;
 use durer_scene::shape::{Primitive, Quadric};
 
 /// Coefficients below this fraction of the largest coefficient count as zero.
@@ -28,7 +29,7 @@ fn has_no_points(quadric: &Quadric) -> bool {
 /// Returns true if the polynomial, multiplied by `sign`, is positive everywhere. The squares are
 /// completed one variable after another, the one with the largest coefficient first.
 fn is_positive(quadric: &Quadric, sign: f64) -> bool {
-    let scaled = |v: durer_scene::math::Vec3| v.to_array().map(|x| sign * f64::from(x));
+    let scaled = |v: Vec3| v.to_array().map(|x| sign * f64::from(x));
     let ([a, b, c], [d, e, f], [g, h, i]) = (scaled(quadric.squares), scaled(quadric.products), scaled(quadric.linear));
     let mut m = [[a, 0.5 * d, 0.5 * e], [0.5 * d, b, 0.5 * f], [0.5 * e, 0.5 * f, c]];
     let mut linear = [0.5 * g, 0.5 * h, 0.5 * i];
@@ -72,7 +73,6 @@ pub(super) fn no_surface(scene_probe: &SceneProbe) -> Vec<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use durer_scene::math::Vec3;
 
     #[test]
     fn equations_without_real_solutions_are_found() {

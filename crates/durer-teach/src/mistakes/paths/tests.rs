@@ -1,10 +1,9 @@
 //! Tests that each mistake of path tracers is named in a scene that shows it.
 
+use super::blocks::Blocks;
 use super::search::Search;
 use super::table::MISTAKES;
-use super::walker::BuggyPathTracer;
 use crate::lesson::TOPICS;
-use crate::mistakes::path_bugs::PixelMean;
 use crate::mistakes::pictures::View;
 use crate::mistakes::tests::world_in;
 use crate::mistakes::{Diagnosis, DiagnosisInput, SceneVariant};
@@ -12,11 +11,8 @@ use durer_image::compare::{Picture, Scale};
 use durer_image::{Image, Transfer};
 use durer_render::film::Filter;
 use durer_render::integrator::{IntegratorKind, PathOptions};
-use durer_render::render::{Job, Sampling, sample_places};
+use durer_render::render::{Job, Sampling};
 use durer_scene::dialect::Dialect;
-use durer_scene::math::{Color, Vec2, Vec3};
-use durer_scene::spectrum::Spectrum;
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// A room with a sphere and two one-sided area lights of different sizes and colours.
@@ -93,29 +89,11 @@ fn job(bounces: u32) -> Job {
     Job { settings: durer_render::integrator::RenderSettings { bounces, ..job.settings }, ..job }
 }
 
-/// Renders an eight-bit picture of a variant.
+/// Renders an eight-bit picture of a variant, with a block for each pixel.
 fn picture(variant: &SceneVariant, job: &Job, seed: u64) -> Picture {
     let view = View { job, scale: Scale::Display, transfer: Transfer::Srgb, max_value: 1.0 };
-    let (tracer, raster) = (BuggyPathTracer::new(variant), variant.raster(job.width, job.height));
-    let samples = sample_places(&variant.world, job);
-    let exposed = |light: Color| view.values(variant.output, &[light])[0];
-    let pixel = |(x, y): (u32, u32)| {
-        let (mut sum, mut count, mut throughput) = (Color::ZERO, 0, Spectrum::ONE);
-        samples(x, y, &mut |place: Vec2, lens: Vec2, _: f32| {
-            let ray = variant.ray(&raster, (x, y), place, lens).unwrap();
-            let light = tracer.radiance(&ray, seed, (x, y), count, &mut throughput);
-            sum += match variant.paths.pixel_mean {
-                PixelMean::Light => light,
-                PixelMean::Clamped => light.clamp(Color::ZERO, Color::ONE),
-                PixelMean::Shown => exposed(light),
-            };
-            count += 1;
-        });
-        let mean = sum / count as f32;
-        if variant.paths.pixel_mean == PixelMean::Shown { mean } else { exposed(mean) }
-    };
-    let places: Vec<(u32, u32)> = job.whole().pixel_positions().collect();
-    let pixels: Vec<Vec3> = places.into_par_iter().map(pixel).collect();
+    let blocks = Blocks { pixels: job.whole().pixel_positions().map(|pixel| vec![pixel]).collect() };
+    let pixels = blocks.render(&view, variant, seed).mean;
     Picture { image: Image::from_pixels(job.width, job.height, pixels).unwrap(), scale: Scale::Display }
 }
 
