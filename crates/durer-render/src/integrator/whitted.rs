@@ -196,10 +196,10 @@ impl<'w> Whitted<'w> {
                 });
                 queue.push_camera(ray, camera as u32, self.settings.bounces, node);
             }
-            let mut batch = [0; MAX_BATCH];
+            let (mut batch, size) = ([0; MAX_BATCH], self.world.batch_size());
             loop {
-                let count = queue.take(&mut batch);
-                if count == 0 {
+                let count = queue.take(&mut batch[..size]);
+                if count == 0 || self.is_cancelled() {
                     return;
                 }
                 let mut parts = SmallVec::new();
@@ -371,7 +371,12 @@ impl<'w> Whitted<'w> {
 
     /// Returns true if secondary rays should still be traced.
     fn continues(&self, bounces: u32) -> bool {
-        bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
+        bounces > 0 && !self.is_cancelled()
+    }
+
+    /// Returns true if the render was cancelled. Its results are discarded.
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
     /// Determines which side of a surface is shaded.

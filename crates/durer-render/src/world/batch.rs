@@ -1,7 +1,7 @@
 //! Intersection of batches of coherent rays. Tracing a batch gives the same results as tracing its
 //! rays one by one.
 
-use super::{Geometry, Hit, Object, World};
+use super::{Accel, Geometry, Hit, Object, World};
 use durer_bvh::{PackHit, PrimitivePacks, TraversalCounter, TriangleHit};
 use durer_scene::math::{Ray, Ray64, Vec3};
 use durer_scene::shape::ShapeHit;
@@ -26,6 +26,13 @@ const MIN_BATCH: usize = 3;
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
+    /// Returns the number of rays to trace together. If every ray tests all objects, the number is
+    /// 1, so that a render can be cancelled between two rays.
+    pub(crate) fn batch_size(&self) -> usize {
+        let tests_all = matches!(self.accel, Accel::None) && self.small_world.is_none();
+        if tests_all { 1 } else { MAX_BATCH }
+    }
+
     /// Computes the first hits of up to [`MAX_BATCH`] rays. The rays are modified during the call
     /// and restored at the end.
     pub(crate) fn first_hits<T: TraversalCounter>(

@@ -100,12 +100,15 @@ impl Integrate for Path<'_> {
         if T::LISTENS || T::COUNTS_WORK {
             return one_by_one(self, rays, begin, listener, colors);
         }
-        let mut hits = [None; MAX_BATCH];
-        for (part, (rays, colors)) in rays.chunks(MAX_BATCH).zip(colors.chunks_mut(MAX_BATCH)).enumerate() {
+        let (mut hits, size) = ([None; MAX_BATCH], self.world.batch_size());
+        for (part, (rays, colors)) in rays.chunks(size).zip(colors.chunks_mut(size)).enumerate() {
+            if self.is_cancelled() {
+                return;
+            }
             self.world.closest_batch(rays, &mut hits[..rays.len()]);
             for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
                 listener.ray();
-                let id = begin(part * MAX_BATCH + i);
+                let id = begin(part * size + i);
                 let context = self.context(id);
                 *color = context.lanes.color(self.trace(self.start(*ray, id), hits[i], &context, listener));
             }

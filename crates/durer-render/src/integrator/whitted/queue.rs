@@ -2,7 +2,6 @@
 
 use crate::integrator::media::MediumStack;
 use crate::integrator::trace::{NodeId, TraceListener};
-use crate::world::MAX_BATCH;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 
 /// Parent index of camera rays.
@@ -118,10 +117,10 @@ impl Queue {
         self.waiting.push(number);
     }
 
-    /// Removes up to [`MAX_BATCH`] of the most recently added segments from the stack and returns
-    /// their number.
-    pub(super) fn take(&mut self, batch: &mut [u32; MAX_BATCH]) -> usize {
-        let count = self.waiting.len().min(MAX_BATCH);
+    /// Moves the most recently added segments from the stack to `batch` until it is full, and
+    /// returns their number.
+    pub(super) fn take(&mut self, batch: &mut [u32]) -> usize {
+        let count = self.waiting.len().min(batch.len());
         let start = self.waiting.len() - count;
         batch[..count].copy_from_slice(&self.waiting[start..]);
         self.waiting.truncate(start);
