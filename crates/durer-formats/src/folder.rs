@@ -163,8 +163,8 @@ impl FolderSource {
     }
 
     /// Returns the name of a file in the same folder that is similar to one of the candidates. If
-    /// the folder does not exist, returns the name of a similar folder. Folders that may not be read
-    /// are not searched for similar names.
+    /// the folder does not exist, returns the name of a similar folder. Folders that may not be
+    /// read are not searched for similar names.
     fn similar_name(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             // The part of the path that is wrong is the first one that does not exist.

@@ -325,7 +325,8 @@ impl Reader<'_, '_> {
     }
 
     /// Records the first material that a solid texture uses but that does not precede the texture,
-    /// because this could form a cycle. The error is reported when the number of materials is known.
+    /// because this could form a cycle. The error is reported when the number of materials is
+    /// known.
     fn record_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
         let numbers = std::mem::take(&mut self.index_spans);

@@ -57,8 +57,8 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Returns true if the scene has neither lights nor emissive surfaces nor a background, so that only
-/// its sky could emit light.
+/// Returns true if the scene has neither lights nor emissive surfaces nor a background, so that
+/// only its sky could emit light.
 fn is_only_light(scene_probe: &SceneProbe) -> bool {
     let world = scene_probe.world();
     world.lights().iter().all(|light| light.color() == Vec3::ZERO)

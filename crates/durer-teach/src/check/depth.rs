@@ -13,13 +13,14 @@ const MANY_BOUNCES: u32 = 8;
 /// A surface is black below `BLACK` and visible above `VISIBLE`.
 const BLACK: f32 = 0.001;
 const VISIBLE: f32 = 0.005;
-/// Fraction of the surface samples that must be black without indirect light, and fraction that must
-/// become visible with indirect light. The few samples of a path-traced pixel can miss its light.
+/// Fraction of the surface samples that must be black without indirect light, and fraction that
+/// must become visible with indirect light. The few samples of a path-traced pixel can miss its
+/// light.
 const MIN_DARK: f32 = 0.6;
 const MIN_GAINED: f32 = 0.2;
 
-/// Returns the depth limit of a pbrt or Mitsuba file that allows no scattering, with its keyword and
-/// its place. The readers make all materials of such a file black.
+/// Returns the depth limit of a pbrt or Mitsuba file that allows no scattering, with its keyword
+/// and its place. The readers make all materials of such a file black.
 pub(super) fn emitters_only(scene_probe: &SceneProbe) -> Option<(&'static str, f32, Span)> {
     let scene = scene_probe.input.scene;
     if scene.render_defaults.bounces != Some(0) {

@@ -19,8 +19,8 @@ const MAX_SHARP_BLUR: f32 = 0.02;
 const MAX_APERTURE: f32 = 0.4;
 /// Aperture that few lenses exceed, as a fraction of the distance to the objects.
 const USUAL_MAX_APERTURE: f32 = 0.12;
-/// Ratio of an object's distance to the focus distance above which the lens focuses nowhere near the
-/// object.
+/// Ratio of an object's distance to the focus distance above which the lens focuses nowhere near
+/// the object.
 const FAR_FROM_FOCUS: f32 = 2.0;
 /// Eye separation above which the two images do not fuse, as a fraction of the distance.
 const MAX_SEPARATION: f32 = 0.5;

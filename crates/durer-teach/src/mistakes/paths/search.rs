@@ -192,8 +192,8 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
     energy(test) / energy(reference)
 }
 
-/// Describes how the noise of two pictures differs if their means do not. `ratio` is the variance of
-/// the test picture divided by that of the reference.
+/// Describes how the noise of two pictures differs if their means do not. `ratio` is the variance
+/// of the test picture divided by that of the reference.
 fn of_noise(ratio: f64) -> String {
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISE_RATIO {

@@ -133,7 +133,8 @@ const ELSEWHERE: [(&str, f32, Option<&str>); 9] = [
     ("path-refraction", 2.0, Some(GLASS)),
 ];
 
-/// Mistakes that the noise of these small pictures can hide. They are not named, or named correctly.
+/// Mistakes that the noise of these small pictures can hide. They are named correctly or not at
+/// all.
 const HIDDEN_BY_NOISE: [(&str, f32); 4] =
     [("path-uniform", 0.0), ("path-two-sided", 0.0), ("path-roulette", 1.0), ("path-refraction", 1.0)];
 
