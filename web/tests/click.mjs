@@ -1,5 +1,6 @@
 /** Clicks through the page in Chromium: `node tests/click.mjs ADDRESS [FOLDER FOR PICTURES]`. */
 import { close } from "./click/harness.mjs";
 
-for (const part of ["viewer", "lecture", "files", "access"]) await import(`./click/${part}.mjs`);
+for (const part of ["viewer", "lecture", "files", "input", "native", "access"])
+  await import(`./click/${part}.mjs`);
 await close();

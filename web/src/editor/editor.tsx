@@ -12,10 +12,12 @@ import { Compartment, EditorState } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import { useEffect, useRef } from "preact/hooks";
 import type { Finding } from "../protocol";
-import { type Store, useStore } from "../viewer/store";
+import { type Store, termAt, useStore } from "../viewer/store";
 import { completion, manual } from "./completion";
 import { sceneHighlight, sceneLanguage } from "./language";
+import { marks, setMark } from "./marks";
 import { colorPicking, scrubbing } from "./numbers";
+import { objectAt } from "./objects";
 import { toOffsets } from "./offsets";
 
 const severities = { error: "error", warning: "warning", note: "info" } as const;
@@ -56,12 +58,20 @@ export function Editor({ store }: { store: Store }) {
     const editor = view.current;
     if (!editor || !store.jump) return;
     const at = toOffsets(editor.state.doc.toString());
-    const [anchor, head] = [at(store.jump.start), at(store.jump.end)];
+    const anchor = at(store.jump.start);
     editor.dispatch({
-      selection: { anchor, head },
+      selection: { anchor },
       effects: EditorView.scrollIntoView(anchor, { y: "center" }),
     });
   }, [store.jump]);
+
+  useEffect(() => {
+    const editor = view.current;
+    if (!editor) return;
+    const found = store.hovered === null ? null : termAt(store.pixel, store.hovered)?.place;
+    const at = toOffsets(editor.state.doc.toString());
+    editor.dispatch({ effects: setMark.of(found ? at(found.start) : null) });
+  }, [store.hovered, store.pixel]);
 
   return <div class="editor" ref={place} />;
 }
@@ -85,6 +95,7 @@ function state(store: Store, language: Compartment): EditorState {
       sceneHighlight,
       scrubbing,
       colorPicking,
+      marks,
       autocompletion({ override: [completion(words)] }),
       manual(words),
       keymap.of([
@@ -101,9 +112,17 @@ function state(store: Store, language: Compartment): EditorState {
       EditorView.contentAttributes.of({ "aria-label": "The scene's text" }),
       EditorView.updateListener.of((update) => {
         if (update.docChanged) store.edit(update.state.doc.toString());
+        if (update.selectionSet || update.focusChanged) markObject(store, update.view);
       }),
     ],
   });
+}
+
+/** Marks the object at the cursor, if the editor has the focus. */
+function markObject(store: Store, view: EditorView) {
+  const { doc, selection } = view.state;
+  const objects = view.hasFocus ? (store.contents?.objects ?? []) : [];
+  store.mark(objectAt(doc.toString(), objects, selection.main.head));
 }
 
 function save(store: Store): boolean {

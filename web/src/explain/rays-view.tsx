@@ -1,4 +1,5 @@
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import { type DrawingSize, useDrawingSize } from "../ui/drawing-size";
 import { type Store, useStore } from "../viewer/store";
 import { lines } from "./edges";
 import { frustum, points, roles, segments } from "./segments";
@@ -21,7 +22,7 @@ export function RaysView({ store }: { store: Store }) {
   useStore(store);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [eye, setEye] = useState<Eye | null>(null);
-  const [size, setSize] = useState({ width: 0, height: 0 });
+  const size = useDrawingSize(canvas);
   const [theme, setTheme] = useState(0);
   const drag = useRef<{ x: number; y: number; moved: boolean } | null>(null);
   const start = useMemo(() => beside(store), [store.pixel, store.outlines]);
@@ -38,14 +39,6 @@ export function RaysView({ store }: { store: Store }) {
       dark.removeEventListener("change", again);
     };
   }, []);
-  useEffect(() => {
-    if (!canvas.current) return;
-    const observer = new ResizeObserver(([entry]) => {
-      if (entry) setSize({ width: entry.contentRect.width, height: entry.contentRect.height });
-    });
-    observer.observe(canvas.current);
-    return () => observer.disconnect();
-  }, []);
   useLayoutEffect(() => {
     if (canvas.current) paint(canvas.current, used, size, store);
   }, [
@@ -56,6 +49,7 @@ export function RaysView({ store }: { store: Store }) {
     store.pixel,
     store.chosen,
     store.hovered,
+    store.marked,
     store.camera,
     store.cast,
     store.boxes,
@@ -71,7 +65,7 @@ export function RaysView({ store }: { store: Store }) {
     for (const { path, segment } of segments(store.pixel)) {
       const line = view.line(segment.from, segment.to);
       if (!line) continue;
-      const distance = toLine(x - box.left, y - box.top, line[0], line[1]);
+      const distance = toLine((x - box.left) / size.unit, (y - box.top) / size.unit, line[0], line[1]);
       if (distance < 9 && (!best || distance < best.distance)) best = { path, distance };
     }
     return best?.path ?? null;
@@ -114,10 +108,12 @@ export function RaysView({ store }: { store: Store }) {
           ArrowUp: [0, -0.1],
           ArrowDown: [0, 0.1],
         };
-        const by = turns[event.key];
-        if (!by) return;
+        const zooms: Record<string, number> = { "+": 0.9, "-": 1 / 0.9 };
+        const [by, zoom] = [turns[event.key], zooms[event.key]];
+        if (!by && !zoom) return;
         event.preventDefault();
-        turn(...by);
+        if (by) turn(...by);
+        if (zoom) setEye({ ...used, distance: used.distance * zoom });
       }}
     />
   );
@@ -149,10 +145,10 @@ function toLine(x: number, y: number, a: { x: number; y: number }, b: { x: numbe
   return Math.hypot(x - a.x - t * dx, y - a.y - t * dy);
 }
 
-function paint(canvas: HTMLCanvasElement, eye: Eye, size: { width: number; height: number }, store: Store) {
+function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: Store) {
   const context = canvas.getContext("2d");
   if (!context || size.width < 1) return;
-  const ratio = window.devicePixelRatio || 1;
+  const ratio = size.unit * (window.devicePixelRatio || 1);
   canvas.width = Math.round(size.width * ratio);
   canvas.height = Math.round(size.height * ratio);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -203,7 +199,7 @@ function objects(
 ) {
   const term = focused(store);
   for (const { object, lines } of store.outlines) {
-    const chosen = term?.object === object;
+    const chosen = term?.object === object || store.marked === object;
     context.strokeStyle = chosen ? strong : plain;
     context.globalAlpha = chosen ? 0.95 : 0.42;
     context.lineWidth = chosen ? 1.4 : 0.8;

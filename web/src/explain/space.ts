@@ -68,6 +68,7 @@ export function projector(view: Frame, width: number, height: number) {
     depth: z,
   });
   return {
+    width,
     /** Projects a point; `null` if it is behind the eye. */
     point(p: Vec): ProjectedPoint | null {
       const at = local(p);

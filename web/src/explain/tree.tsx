@@ -12,7 +12,7 @@ export function Tree({ store }: { store: Store }) {
   const tree = store.pixel?.tree;
   if (!tree) return <p class="hint">The camera sees nothing through this pixel.</p>;
   return (
-    <ul class="tree" role="tree" aria-label="Terms of the pixel">
+    <ul class="tree" role="tree" aria-label="Terms of the pixel" onKeyDown={moveFocus}>
       <Branch store={store} term={tree} path="0" level={1} />
     </ul>
   );
@@ -82,6 +82,22 @@ function Branch({ store, term, path, level }: { store: Store; term: Term; path: 
       )}
     </li>
   );
+}
+
+/** Moves between the terms with the arrow keys: up and down to the next term, left and right to fold and unfold. */
+function moveFocus(event: KeyboardEvent & { currentTarget: Element }) {
+  const titles = [...event.currentTarget.querySelectorAll<HTMLElement>(".title")];
+  const at = titles.indexOf(document.activeElement as HTMLElement);
+  const title = titles[at];
+  if (!title) return;
+  if (event.key === "ArrowDown") titles[at + 1]?.focus();
+  else if (event.key === "ArrowUp") titles[at - 1]?.focus();
+  else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+    const isOpen = title.closest("[role=treeitem]")?.getAttribute("aria-expanded");
+    if (isOpen === String(event.key === "ArrowLeft"))
+      title.parentElement?.querySelector<HTMLElement>(".fold")?.click();
+  } else return;
+  event.preventDefault();
 }
 
 function percent(share: number): string {

@@ -23,13 +23,22 @@ export const OwnSceneContext = createContext<OwnScene>({ title: "", name: "", te
 /** Render options of figures: few samples, so that images finish quickly. */
 const figureOptions: Setting[] = [{ name: "samples", value: "4" }];
 
-/** Opens a session with the scene of a figure. If the text changes, the session gets the new text. */
-export function useScene(text: string, options: Setting[] = figureOptions): Session {
+/** File that the scene of a figure refers to. */
+interface FigureFile {
+  name: string;
+  text: string;
+}
+
+/** Opens a session with the scene of a figure. If the text or the file changes, the session gets the new one. */
+export function useScene(text: string, options: Setting[] = figureOptions, file?: FigureFile): Session {
   const engine = useContext(EngineContext);
   if (!engine) throw new Error("figures need an `EngineContext`");
   const session = useMemo(() => engine.session(), [engine]);
   const opened = useRef(false);
   const key = JSON.stringify(options);
+  useEffect(() => {
+    if (file) session.send({ kind: "give", name: file.name, base64: btoa(file.text), opens: false });
+  }, [session, file?.text]);
   useEffect(() => {
     if (opened.current) session.send({ kind: "edit", text });
     else session.send({ kind: "open", name: "figure.txt", text });

@@ -26,7 +26,7 @@ export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: Line
   );
 }
 
-/** Draws an arrowhead in page coordinates. */
+/** Draws an arrowhead at a position in the drawing. */
 export function Head({ x, y, angle, size }: { x: number; y: number; angle: number; size: number }) {
   const corner = (turn: number) =>
     `${x + size * Math.cos(angle + turn)},${y + size * Math.sin(angle + turn)}`;
@@ -87,7 +87,40 @@ export function Name({
   const projected = view.point(at);
   if (!projected) return null;
   return (
-    <text class="name" x={projected.x + dx} y={projected.y + dy} fill={color ?? "var(--ink)"}>
+    <Label x={projected.x} y={projected.y} dx={dx} dy={dy} width={view.width} color={color}>
+      {children}
+    </Label>
+  );
+}
+
+/** Draws a label beside a position, on its left near the right edge of the drawing. */
+export function Label({
+  x,
+  y,
+  dx,
+  dy,
+  width,
+  color,
+  children,
+}: {
+  x: number;
+  y: number;
+  dx: number;
+  dy: number;
+  /** Width of the drawing. */
+  width: number;
+  color: string | undefined;
+  children: ComponentChildren;
+}) {
+  const isLeft = dx > 0 && x + dx > width - 90;
+  return (
+    <text
+      class="name"
+      x={isLeft ? x - dx : x + dx}
+      y={Math.max(20, y + dy)}
+      text-anchor={isLeft ? "end" : "start"}
+      fill={color ?? "var(--ink)"}
+    >
       {children}
     </text>
   );
@@ -120,7 +153,7 @@ export function Dot({
   );
 }
 
-/** Properties of a handle, at page coordinates `x` and `y`. */
+/** Properties of a handle at a position in the drawing. */
 interface HandleProps {
   x: number;
   y: number;
@@ -128,7 +161,7 @@ interface HandleProps {
   label: string;
   /** Handles a drag to a position in the drawing. */
   drag(x: number, y: number): void;
-  /** Handles arrow keys, with steps in pixels. */
+  /** Handles arrow keys, with steps in units of the drawing. */
   nudge?(dx: number, dy: number): void;
   end?(): void;
 }
@@ -138,8 +171,10 @@ export function Handle({ x, y, color, label, drag, nudge, end }: HandleProps) {
   const held = useRef<{ dx: number; dy: number } | null>(null);
   const place = (event: PointerEvent & { currentTarget: Element }) => {
     const svg = event.currentTarget.closest("svg");
-    const box = svg?.getBoundingClientRect();
-    return { x: event.clientX - (box?.left ?? 0), y: event.clientY - (box?.top ?? 0) };
+    if (!svg) return { x: 0, y: 0 };
+    const box = svg.getBoundingClientRect();
+    const unit = box.width / svg.viewBox.baseVal.width;
+    return { x: (event.clientX - box.left) / unit, y: (event.clientY - box.top) / unit };
   };
   const release = () => {
     held.current = null;
@@ -149,7 +184,7 @@ export function Handle({ x, y, color, label, drag, nudge, end }: HandleProps) {
     <g
       class="handle"
       role="button"
-      tabIndex={0}
+      tabindex={0}
       aria-label={`${label}: drag, or use the arrow keys`}
       transform={`translate(${x} ${y})`}
       onPointerDown={(event) => {

@@ -16,7 +16,10 @@ interface Props {
 /** The lecture, as a book whose figures run the ray tracer, or as slides with the same content. */
 export function Lecture({ engine, name, topics, topic }: Props) {
   const [presents, setPresents] = useState(false);
+  /** True if a slide shows its questions. */
+  const [asks, setAsks] = useState(false);
   const place = useRef<HTMLElement>(null);
+  const contents = useRef<HTMLElement>(null);
   const at = Math.max(
     0,
     topics.findIndex((known) => known.id === topic),
@@ -29,15 +32,20 @@ export function Lecture({ engine, name, topics, topic }: Props) {
 
   useEffect(() => {
     place.current?.scrollTo({ top: 0 });
+    setAsks(false);
+    contents.current?.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest", inline: "center" });
   }, [now]);
   useEffect(() => {
     const key = (event: KeyboardEvent) => {
-      const inside =
-        event.target instanceof Element && event.target.closest("input, .handle, .drags, select");
-      if (inside || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+      const within = (selector: string) =>
+        event.target instanceof Element && event.target.closest(selector) !== null;
+      if (event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+      const moves = within("input:not([type=checkbox]), .handle, .drags, select");
+      if (event.key.startsWith("Arrow") && moves) return;
       if (event.key === "ArrowRight" || event.key === "PageDown") go(at + 1);
       else if (event.key === "ArrowLeft" || event.key === "PageUp") go(at - 1);
       else if (event.key === "p") present(!presents);
+      else if (event.key === "q" && presents) setAsks(!asks);
       else if (event.key === "Escape") present(false);
       else return;
       event.preventDefault();
@@ -60,8 +68,8 @@ export function Lecture({ engine, name, topics, topic }: Props) {
   if (!now) return null;
   return (
     <EngineContext.Provider value={engine}>
-      <div class={`lecture${presents ? " presents" : ""}`}>
-        <nav class="contents" aria-label="Topics">
+      <div class={`lecture${presents ? " presents" : ""}${asks ? " asks" : ""}`}>
+        <nav class="contents" aria-label="Topics" ref={contents}>
           <ol>
             {topics.map((known) => (
               <li key={known.id}>
@@ -100,6 +108,11 @@ export function Lecture({ engine, name, topics, topic }: Props) {
               <button type="button" class="button" disabled={at === 0} onClick={() => go(at - 1)}>
                 ← {topics[at - 1]?.title ?? ""}
               </button>
+              {presents && now.questions.length > 0 && (
+                <button type="button" class="button" aria-pressed={asks} onClick={() => setAsks(!asks)}>
+                  Questions
+                </button>
+              )}
               <button type="button" class="button" aria-pressed={presents} onClick={() => present(!presents)}>
                 {presents ? "Leave presentation" : "Present"}
               </button>

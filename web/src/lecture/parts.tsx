@@ -1,8 +1,9 @@
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import { Switch } from "../ui/switch";
 
 export { Choice } from "../ui/choice";
-export { Switch } from "../ui/switch";
+export { Switch };
 
 /** Layout of a figure: a drawing, its controls, and its equations. */
 export function Figure({
@@ -54,6 +55,16 @@ export function Sym({
       {children}
     </var>
   );
+}
+
+/** Switch that makes the usual mistake of a topic. */
+export function Mistake({ name, on, change }: { name: string; on: boolean; change(on: boolean): void }) {
+  return <Switch label={`Common mistake: ${name}`} on={on} change={change} />;
+}
+
+/** Result of the usual mistake, below the correct one. */
+export function Wrong({ children }: { children: ComponentChildren }) {
+  return <div class="wrong">{children}</div>;
 }
 
 /** Question with an answer that can be unfolded. */

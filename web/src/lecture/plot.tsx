@@ -1,13 +1,15 @@
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef } from "preact/hooks";
+import { useDrawingSize } from "../ui/drawing-size";
+import { Label } from "./draw";
 
-/** Mapping from the plane of a figure to page coordinates. */
+/** Mapping from the plane of a figure to the units of its drawing. */
 export interface Scale {
   x(x: number): number;
   y(y: number): number;
-  /** Maps page coordinates back to the plane. */
+  /** Maps units of the drawing back to the plane. */
   back(x: number, y: number): [number, number];
-  /** Pixels per unit. */
+  /** Units of the drawing per unit of the plane. */
   unit: number;
   width: number;
   height: number;
@@ -25,16 +27,7 @@ interface Props {
 /** Two-dimensional drawing of a figure. */
 export function Plot({ reach, middle = [0, 0], label, aspect = 16 / 9, children }: Props) {
   const box = useRef<HTMLDivElement>(null);
-  const [size, setSize] = useState({ width: 0, height: 0 });
-  useEffect(() => {
-    if (!box.current) return;
-    const observer = new ResizeObserver(([entry]) => {
-      if (entry) setSize({ width: entry.contentRect.width, height: entry.contentRect.height });
-    });
-    observer.observe(box.current);
-    return () => observer.disconnect();
-  }, []);
-  const { width, height } = size;
+  const { width, height } = useDrawingSize(box);
   const unit = Math.min(width / (2 * reach[0]), height / (2 * reach[1]));
   const scale: Scale = {
     x: (x) => width / 2 + (x - middle[0]) * unit,
@@ -46,7 +39,7 @@ export function Plot({ reach, middle = [0, 0], label, aspect = 16 / 9, children 
   };
   return (
     <div class="stage plot" ref={box} style={{ aspectRatio: String(aspect) }}>
-      <svg width={width} height={height} role="group" aria-label={label}>
+      <svg viewBox={`0 0 ${width} ${height}`} role="group" aria-label={label}>
         {width > 1 && children(scale)}
       </svg>
     </div>
@@ -91,6 +84,26 @@ export function PlaneArrow({
   );
 }
 
+/** Draws the point that a common mistake takes for the hit. */
+export function WrongHit({ scale, at, name }: { scale: Scale; at: [number, number]; name: string }) {
+  const color = "var(--ray-shadowed)";
+  return (
+    <>
+      <circle
+        cx={scale.x(at[0])}
+        cy={scale.y(at[1])}
+        r={8}
+        fill="var(--paper)"
+        stroke={color}
+        stroke-width={3}
+      />
+      <PlaneName scale={scale} at={at} color={color} dy={-18}>
+        {name}
+      </PlaneName>
+    </>
+  );
+}
+
 /** Draws a label in the plane. */
 export function PlaneName({
   scale,
@@ -108,8 +121,8 @@ export function PlaneName({
   dy?: number;
 }) {
   return (
-    <text class="name" x={scale.x(at[0]) + dx} y={scale.y(at[1]) + dy} fill={color ?? "var(--ink)"}>
+    <Label x={scale.x(at[0])} y={scale.y(at[1])} dx={dx} dy={dy} width={scale.width} color={color}>
       {children}
-    </text>
+    </Label>
   );
 }

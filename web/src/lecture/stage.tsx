@@ -1,7 +1,8 @@
 import type { ComponentChildren } from "preact";
-import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { type Eye, frame, orbit, type Projector, projector } from "../explain/space";
+import { useDrawingSize } from "../ui/drawing-size";
 import { draw } from "../viewer/picture";
 
 interface Props {
@@ -11,69 +12,61 @@ interface Props {
   label: string;
   /** Width divided by height. */
   aspect?: number;
-  children(view: Projector, size: { width: number; height: number }): ComponentChildren;
+  children(view: Projector): ComponentChildren;
 }
 
 /** Rendered scene with a drawing on top. Dragging orbits the camera. */
 export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
-  const [size, setSize] = useState({ width: 0, height: 0 });
+  const size = useDrawingSize(box);
   const drag = useRef<{ x: number; y: number } | null>(null);
   const moving = useRef(false);
 
-  useEffect(() => {
-    if (!box.current) return;
-    const observer = new ResizeObserver(([entry]) => {
-      if (entry) setSize({ width: entry.contentRect.width, height: entry.contentRect.height });
-    });
-    observer.observe(box.current);
-    return () => observer.disconnect();
-  }, []);
   useEffect(
     () =>
       session.on((event, bytes) => {
         if (event.kind === "picture" && canvas.current)
           draw(canvas.current, event.head.width, event.head.height, bytes);
         // Replace the scene's own camera by the figure's.
-        if (event.kind === "scene") look(session, eyeRef.current, false);
+        if (event.kind === "scene") look(session, latest.current, false);
       }),
     [session],
   );
-  const eyeRef = useRef(eye);
-  eyeRef.current = eye;
+  const fitted = { ...eye, angle: fitAngle(eye.angle, size.width / size.height, aspect) };
+  const latest = useRef(fitted);
+  latest.current = fitted;
 
   useEffect(() => {
     if (size.width < 2) return;
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = size.unit * Math.min(window.devicePixelRatio || 1, 2);
     session.send({
       kind: "size",
       width: Math.round(size.width * ratio),
       height: Math.round(size.height * ratio),
     });
-    look(session, eye, moving.current);
+    look(session, fitted, moving.current);
   }, [session, size]);
   useLayoutEffect(() => {
-    if (size.width >= 2) look(session, eye, moving.current);
+    if (size.width >= 2) look(session, fitted, moving.current);
   }, [session, eye]);
 
-  const view = projector(frame(eye), size.width, size.height);
+  const view = projector(frame(fitted), size.width, size.height);
   const settle = () => {
     drag.current = null;
     if (moving.current) {
       moving.current = false;
-      look(session, eye, false);
+      look(session, fitted, false);
     }
   };
   return (
     <div class="stage" ref={box} style={{ aspectRatio: String(aspect) }}>
       <canvas ref={canvas} />
       <svg
-        width={size.width}
-        height={size.height}
+        viewBox={`0 0 ${size.width} ${size.height}`}
         role="group"
         aria-label={label}
-        tabIndex={0}
+        tabindex={0}
         onPointerDown={(event) => {
           if (event.defaultPrevented) return;
           event.currentTarget.setPointerCapture(event.pointerId);
@@ -103,10 +96,16 @@ export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }
           setEye(orbit(eye, ...by));
         }}
       >
-        {size.width > 1 && children(view, size)}
+        {size.width > 1 && children(view)}
       </svg>
     </div>
   );
+}
+
+/** Widens the angle of a stage that is wider than designed, so that nothing is cut off at its top and bottom. */
+export function fitAngle(angle: number, aspect: number, designed: number): number {
+  if (!(aspect > designed)) return angle;
+  return (Math.atan((Math.tan((angle * Math.PI) / 360) * aspect) / designed) * 360) / Math.PI;
 }
 
 function look(session: Session, eye: Eye, moving: boolean) {

@@ -2,6 +2,7 @@ import { useRef, useState } from "preact/hooks";
 import { gallery } from "./gallery";
 import { linkOf } from "./link";
 import { type Store, useStore } from "./store";
+import { uploadFiles } from "./upload";
 
 /** Controls that open, save and share scenes. */
 export function FileMenu({ store }: { store: Store }) {
@@ -20,7 +21,13 @@ export function FileMenu({ store }: { store: Store }) {
         type="file"
         multiple
         hidden
-        onChange={(event) => uploadFiles(store, [...(event.currentTarget.files ?? [])])}
+        onChange={(event) => {
+          const files = [...(event.currentTarget.files ?? [])];
+          uploadFiles(
+            store,
+            files.map((file) => ({ path: file.name, file })),
+          );
+        }}
       />
       <select
         class="button"
@@ -54,25 +61,4 @@ export function FileMenu({ store }: { store: Store }) {
       )}
     </>
   );
-}
-
-const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|pbrt|xml|3mf|rad|oct)$/i;
-
-/** Uploads files, and opens the last scene or model among them. It can refer to the other files. */
-export async function uploadFiles(store: Store, files: File[]) {
-  const main = files.findLast((file) => scenes.test(file.name));
-  for (const file of files.filter((file) => file !== main)) {
-    store.session.send({ kind: "give", name: file.name, base64: await base64(file), opens: false });
-  }
-  if (main) store.session.send({ kind: "give", name: main.name, base64: await base64(main), opens: true });
-}
-
-async function base64(file: File): Promise<string> {
-  const url = await new Promise<string>((resolve, reject) => {
-    const reader = new FileReader();
-    reader.onload = () => resolve(String(reader.result));
-    reader.onerror = () => reject(reader.error);
-    reader.readAsDataURL(file);
-  });
-  return url.slice(url.indexOf(",") + 1);
 }

@@ -151,8 +151,21 @@ function key(event: KeyboardEvent, store: Store) {
     h: { kind: "home" },
     f: { kind: "frame" },
   };
+  const pixel = neighbour(event.key, store);
+  if (pixel) store.explain(...pixel);
   const motion = motions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!motion) return;
+  if (!motion && !pixel) return;
   event.preventDefault();
-  store.move(motion, false);
+  if (motion) store.move(motion, false);
+}
+
+/** Returns the pixel that a key selects: Enter the middle of the visible part, `i j k l` a neighbour. */
+function neighbour(key: string, { pixel, zoom, head }: Store): [number, number] | null {
+  if (!head) return null;
+  const { full_width: width, full_height: height } = head;
+  if (key === "Enter")
+    return [clamp(Math.floor(zoom.x * width), width), clamp(Math.floor(zoom.y * height), height)];
+  const steps: Record<string, [number, number]> = { i: [0, -1], j: [-1, 0], k: [0, 1], l: [1, 0] };
+  const step = steps[key.toLowerCase()];
+  return step && pixel ? [clamp(pixel.x + step[0], width), clamp(pixel.y + step[1], height)] : null;
 }

@@ -1,5 +1,6 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { gestures } from "./gestures";
+import { Overlay } from "./overlay";
 import { PixelNumbers } from "./pixel-numbers";
 import { type Store, useStore } from "./store";
 import { whole, zoomBy } from "./zoom";
@@ -60,7 +61,7 @@ export function Picture({ store }: { store: Store }) {
           role="img"
           class={scale > 2 ? "squares" : ""}
           aria-label={
-            "The image. Drag or use the arrow keys to orbit, w a s d to walk, plus and minus to move closer or farther, z to zoom into the image, click to explain a pixel."
+            "The image. Drag or use the arrow keys to orbit, w a s d to walk, plus and minus to move closer or farther, z to zoom into the image. Click a pixel to explain it, or use Enter for the middle one and i j k l for its neighbours."
           }
           style={place(...region)}
         />
@@ -70,6 +71,9 @@ export function Picture({ store }: { store: Store }) {
             <div class="unseen" style={place(0, scan.y + 1, fullWidth, fullHeight - scan.y - 1)} />
           </>
         )}
+        <div class="whole" style={place(0, 0, fullWidth, fullHeight)}>
+          <Overlay store={store} width={fullWidth * scale} height={fullHeight * scale} />
+        </div>
         <PixelNumbers store={store} scale={scale} corner={corner} />
         {pixel && head && (
           <div

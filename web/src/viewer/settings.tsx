@@ -54,7 +54,9 @@ function Field({ store, field }: { store: Store; field: FieldState }) {
   const [only] = field.values;
   const bounded = field.least !== null && field.most !== null;
   if (field.values.length === 1 && only !== undefined && bounded) {
-    const [min, max] = [Math.max(field.least ?? 0, 0.5), Math.min(field.most ?? 180, 179)];
+    // Angles of 0 and 180 degrees have no image.
+    const inset = /angle|fov/i.test(field.name) ? 0.5 : 0;
+    const [min, max] = [(field.least ?? 0) + inset, (field.most ?? 180) - inset];
     return (
       <div title={field.doc} onPointerUp={() => set(field.values, false)}>
         <Slider
@@ -62,7 +64,7 @@ function Field({ store, field }: { store: Store; field: FieldState }) {
           value={only}
           min={min}
           max={max}
-          step={0.1}
+          step={(max - min) / 1000}
           change={(x) => set([x], true)}
         />
       </div>

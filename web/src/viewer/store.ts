@@ -44,6 +44,8 @@ export class Store {
   /** True if the formulas of the selected term are visible. */
   unfolded = false;
   hovered: string | null = null;
+  /** Index of the object at the cursor in the text. */
+  marked: number | null = null;
   outlines: Outline[] = [];
   lights: LightMarker[] = [];
   words: Keyword[] = [];
@@ -67,6 +69,7 @@ export class Store {
   #listeners = new Set<() => void>();
   #crop: [number, number, number, number] | null = null;
   #waiting: Motion[] = [];
+  #refresh = 0;
   #due = false;
 
   constructor(session: Session) {
@@ -197,10 +200,29 @@ export class Store {
       this.cast = null;
       this.unfolded = false;
       this.choose("0");
+      this.goTo(pixel.tree?.place ?? null);
     } catch (error) {
       this.error = String(error);
     }
     this.changed();
+  }
+
+  /** Explains the pixel again after the scene or the camera has changed. */
+  #explainAgain() {
+    clearTimeout(this.#refresh);
+    this.#refresh = window.setTimeout(async () => {
+      const old = this.pixel;
+      if (!old) return;
+      try {
+        const { x, y } = old;
+        const { pixel } = await this.session.ask({ kind: "explain", x, y, sample: null }, "explained");
+        if (this.pixel !== old) return;
+        this.pixel = pixel;
+        this.choose(termAt(pixel, this.chosen) ? this.chosen : "0");
+      } catch {
+        // The pixel no longer exists, or the scene has errors.
+      }
+    }, 250);
   }
 
   /** Selects a term of the tree, and intersects its ray with all objects. */
@@ -220,6 +242,13 @@ export class Store {
   hover(path: string | null) {
     if (this.hovered === path) return;
     this.hovered = path;
+    this.changed();
+  }
+
+  /** Marks an object in the image and in the view of the rays; `null` marks none. */
+  mark(object: number | null) {
+    if (object === this.marked) return;
+    this.marked = object;
     this.changed();
   }
 
@@ -277,6 +306,7 @@ export class Store {
           this.boxes = [];
           if (this.boxLevel !== null) this.#askBoxes();
           if (this.opened?.text === null) this.#askTree();
+          this.#explainAgain();
         }
         break;
       case "checked":
@@ -284,6 +314,7 @@ export class Store {
         break;
       case "camera":
         this.camera = event.camera;
+        this.#explainAgain();
         break;
       case "picture":
         this.head = event.head;

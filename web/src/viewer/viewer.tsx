@@ -2,26 +2,26 @@ import { useEffect, useState } from "preact/hooks";
 import { Editor } from "../editor/editor";
 import { Findings } from "../editor/findings";
 import { Explain } from "../explain/panel";
-import { uploadFiles } from "./file-menu";
 import { Model } from "./model";
 import { Picture } from "./picture";
 import { Settings } from "./settings";
 import { Status } from "./status";
 import { type Store, useStore } from "./store";
+import { droppedFiles, uploadFiles } from "./upload";
 
-type Side = "explain" | "settings";
+/** Panel beside the image, or below it in narrow windows, where the text is one of the panels. */
+type Side = "explain" | "settings" | "text";
 
 /** The viewer: panes with the scene's text, its image, and the explanation of a pixel. */
 export function Viewer({ store }: { store: Store }) {
   useStore(store);
   const [side, setSide] = useState<Side>("explain");
-  const [pane, setPane] = useState<"text" | "why">("why");
 
   useEffect(() => {
     const over = (event: DragEvent) => event.preventDefault();
-    const drop = (event: DragEvent) => {
+    const drop = async (event: DragEvent) => {
       event.preventDefault();
-      uploadFiles(store, [...(event.dataTransfer?.files ?? [])]);
+      uploadFiles(store, await droppedFiles(event.dataTransfer?.items ?? []));
     };
     window.addEventListener("dragover", over);
     window.addEventListener("drop", drop);
@@ -41,7 +41,7 @@ export function Viewer({ store }: { store: Store }) {
   }, [store.pixel]);
 
   return (
-    <main class="viewer" data-pane={pane}>
+    <main class="viewer" data-side={side}>
       <section class="pane text" aria-label="Scene">
         <DiskNotice store={store} />
         {store.opened?.text === null ? (
@@ -60,21 +60,18 @@ export function Viewer({ store }: { store: Store }) {
         <Picture store={store} />
         <Status store={store} />
       </section>
-      <div class="switcher tabs" role="tablist" aria-label="Panes">
-        <PaneTab name="Explain" on={pane === "why"} choose={() => setPane("why")} />
-        <PaneTab name="Scene" on={pane === "text"} choose={() => setPane("text")} />
+      <div class="pane-head switcher tabs" role="tablist" aria-label="Panel">
+        <PaneTab name="Explain" on={side === "explain"} choose={() => setSide("explain")} />
+        <PaneTab name="Camera and render" on={side === "settings"} choose={() => setSide("settings")} />
+        <PaneTab name="Scene" on={side === "text"} choose={() => setSide("text")} />
       </div>
       <section class="pane why" aria-label="Explanation and settings">
-        <div class="pane-head tabs" role="tablist" aria-label="Panel">
-          <PaneTab name="Explain" on={side === "explain"} choose={() => setSide("explain")} />
-          <PaneTab name="Camera and render" on={side === "settings"} choose={() => setSide("settings")} />
-        </div>
-        {side === "explain" ? (
+        {side === "settings" ? (
+          <Settings store={store} />
+        ) : (
           <div class="scrolls">
             <Explain store={store} />
           </div>
-        ) : (
-          <Settings store={store} />
         )}
       </section>
     </main>
@@ -99,7 +96,7 @@ const names: Record<string, string> = {
 
 function PictureTabs({ store }: { store: Store }) {
   return (
-    <div class="tabs" role="tablist" aria-label="Pictures">
+    <div class="tabs" role="tablist" aria-label="Pictures" onWheel={scrollSideways}>
       {store.opened?.pictures.map(({ name, doc }) => (
         <button
           key={name}
@@ -115,6 +112,11 @@ function PictureTabs({ store }: { store: Store }) {
       ))}
     </div>
   );
+}
+
+/** Lets a mouse wheel scroll a row of tabs. */
+function scrollSideways(event: WheelEvent & { currentTarget: Element }) {
+  event.currentTarget.scrollLeft += event.deltaY;
 }
 
 function DiskNotice({ store }: { store: Store }) {

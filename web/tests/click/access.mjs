@@ -1,27 +1,82 @@
 /** Names and contrast, by axe. */
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { finished, open, test, wide } from "./harness.mjs";
+import { finished, narrow, open, scenes, test, topics, wide } from "./harness.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-for (const colorScheme of ["light", "dark"]) {
-  for (const hash of ["#/viewer", "#/lecture/sphere", "#/lecture/shadow"]) {
-    await test(`accessible ${hash.slice(2)} ${colorScheme}`, { ...wide, colorScheme }, async (page) => {
-      await open(page, hash);
-      if (hash === "#/viewer") {
+
+/** Throws if axe finds violations of WCAG A or AA on the page. */
+async function check(page) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() =>
+    window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa"] }),
+  );
+  const told = violations.map(
+    ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 90)).join(" | ")}`,
+  );
+  if (told.length > 0) throw new Error(told.join("\n"));
+}
+
+/** Explains a pixel of the glass sphere. */
+async function explain(page) {
+  const box = await page.locator(".picture canvas").boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+  await page.waitForSelector(".tree .term");
+}
+
+/** Screens of the viewer, and how to reach them. */
+const screens = {
+  explain,
+  async steps(page) {
+    await explain(page);
+    await page.getByRole("tab", { name: "Step by step" }).click();
+    await page.waitForSelector(".stepper .code");
+  },
+  async settings(page) {
+    await page.getByRole("tab", { name: "Camera and render" }).click();
+  },
+  async model(page) {
+    await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
+    await page.waitForSelector(".materials li", { state: "attached" });
+    if (!(await page.locator(".materials").isVisible()))
+      await page.getByRole("tab", { name: "Scene" }).click();
+    await page.locator(".materials button").first().click();
+  },
+};
+
+for (const [width, size] of [
+  ["wide", wide],
+  ["narrow", narrow],
+]) {
+  for (const colorScheme of ["light", "dark"]) {
+    await test(`accessible viewer ${width} ${colorScheme}`, { ...size, colorScheme }, async (page) => {
+      for (const [name, reach] of Object.entries(screens)) {
+        await page.goto("about:blank");
+        await open(page);
         await finished(page);
-        const box = await page.locator(".picture canvas").boundingBox();
-        await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
-        await page.waitForSelector(".tree .term");
-      } else await page.waitForSelector(".equation .numbers");
-      await page.evaluate(axe);
-      const { violations } = await page.evaluate(() =>
-        window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa"] }),
-      );
-      const told = violations.map(
-        ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 90)).join(" | ")}`,
-      );
-      if (told.length > 0) throw new Error(told.join("\n"));
+        await reach(page);
+        await check(page).catch((error) => {
+          throw new Error(`${name}: ${error.message}`);
+        });
+      }
+    });
+    await test(`accessible lecture ${width} ${colorScheme}`, { ...size, colorScheme }, async (page) => {
+      for (const topic of topics) {
+        await open(page, `#/lecture/${topic}`);
+        await page.waitForSelector(".equation .numbers");
+        await check(page).catch((error) => {
+          throw new Error(`${topic}: ${error.message}`);
+        });
+      }
     });
   }
 }
+
+await test("accessible slides", wide, async (page) => {
+  await open(page, "#/lecture/sphere");
+  await page.waitForSelector(".equation .numbers");
+  await page.keyboard.press("p");
+  await page.keyboard.press("q");
+  await page.waitForSelector(".questions", { state: "visible" });
+  await check(page);
+});

@@ -14,6 +14,8 @@ let failed = 0;
 export async function test(name, options, work) {
   if (!wants.test(name)) return;
   const context = await browser.newContext(options);
+  // Other programs may need the processors.
+  context.setDefaultTimeout(180_000);
   const page = await context.newPage();
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
@@ -30,11 +32,16 @@ export async function test(name, options, work) {
   await context.close();
 }
 
+/** Chapters of the lecture. */
+export const topics = (
+  process.env.TOPICS ??
+  "machine,ray,pinhole,obscura,camera,projection,cameras,homogeneous,plane,sphere,triangle,transform,normals,solids,epsilon,shading,shadow,mirror,glass,samples,structures,paths,caustics,own"
+).split(",");
 export const scenes = new URL("../../../scenes/", import.meta.url).pathname;
 export const wide = { viewport: { width: 1440, height: 900 } };
 export const middle = { viewport: { width: 900, height: 1100 } };
 export const narrow = { viewport: { width: 400, height: 820 }, hasTouch: true };
-export const finished = (page) => page.waitForSelector(".status .hash", { timeout: 60_000 });
+export const finished = (page) => page.waitForSelector(".status .hash");
 export const shot = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
 
 export async function open(page, hash = "#/viewer") {

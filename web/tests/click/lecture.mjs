@@ -1,10 +1,6 @@
 /** Figures, their numbers, and slides. */
-import { middle, narrow, open, shot, test, wide } from "./harness.mjs";
+import { middle, narrow, open, shot, test, topics, wide } from "./harness.mjs";
 
-const topics = (
-  process.env.TOPICS ??
-  "machine,ray,pinhole,obscura,camera,projection,cameras,homogeneous,plane,sphere,triangle,transform,normals,solids,epsilon,shading,shadow,mirror,glass,samples,structures,paths,caustics,own"
-).split(",");
 for (const topic of topics) {
   await test(`lecture ${topic}`, wide, async (page) => {
     await open(page, `#/lecture/${topic}`);
@@ -16,9 +12,20 @@ for (const topic of topics) {
     for (let i = 0; i < (await handles.count()); i++) {
       const before = await numbers();
       await handles.nth(i).focus();
+      if (!(await handles.nth(i).evaluate((handle) => handle === document.activeElement)))
+        throw new Error(`handle ${i} cannot be focused`);
       for (let k = 0; k < 4; k++) await page.keyboard.press("ArrowLeft");
       await page.waitForTimeout(250);
       if (before === (await numbers())) throw new Error(`handle ${i} changes no number`);
+    }
+    if (!page.url().endsWith(`/${topic}`)) throw new Error("a handle's key turned the page");
+    const mistake = page.getByRole("switch", { name: /^Common mistake/ });
+    if ((await mistake.count()) > 0) {
+      const before = await page.locator(".figure").innerHTML();
+      await mistake.click();
+      await page.waitForTimeout(250);
+      if (before === (await page.locator(".figure").innerHTML()))
+        throw new Error("the mistake changes nothing");
     }
   });
 }
@@ -30,7 +37,6 @@ async function told(page, pattern) {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.querySelector(".equations").textContent),
     pattern.source,
-    { timeout: 60_000 },
   );
   return pattern
     .exec(await equations(page))
@@ -82,14 +88,12 @@ await test("numbers: epsilon", wide, async (page) => {
   await page.waitForFunction(
     () => /light leaks/.test(document.querySelector(".equations").textContent),
     null,
-    { timeout: 30_000 },
   );
   await shot(page, "epsilon-leaks");
   await page.getByRole("switch", { name: "Exact origins, no epsilon" }).click();
   await page.waitForFunction(
     () => /(^|\D)0 of 76,800/.test(document.querySelector(".equations").textContent),
     null,
-    { timeout: 30_000 },
   );
 });
 
@@ -108,8 +112,31 @@ await test("numbers: caustics", wide, async (page) => {
     (old) =>
       Number(/(\d+) of [\d,]+ photons/.exec(document.querySelector(".equations").textContent)?.[1]) > 2 * old,
     few,
-    { timeout: 60_000 },
   );
+});
+
+await test("numbers: mistakes", wide, async (page) => {
+  await open(page, "#/lecture/sphere");
+  const [b, a, c] = await told(page, /\(?(−?[\d.]+)\)?² − 4 · ([\d.]+) · \(?(−?[\d.]+)/);
+  await page.getByRole("switch", { name: /^Common mistake/ }).click();
+  const [t] = await told(page, /(−?[\d.]+) and −?[\d.]+: not on the sphere/);
+  near(t, (-b - Math.sqrt(b * b - 4 * c)) / 2, 0.02, `root for a = 1 instead of ${a}`);
+  await open(page, "#/lecture/camera");
+  await told(page, /1 \/ tan 23° = ([\d.]+)/);
+  await page.getByRole("switch", { name: /^Common mistake/ }).click();
+  near((await told(page, /1 \/ tan 46° = (0\.\d+)/))[0], 1 / Math.tan((46 * Math.PI) / 180), 1e-4, "D");
+  await open(page, "#/lecture/shadow");
+  const [any, all] = await told(page, /any hit: (\d+) tests?, closest hit: (\d+)/);
+  if (!(any < all)) throw new Error(`${any} of ${all} tests`);
+});
+
+await test("numbers: interpolation", wide, async (page) => {
+  await open(page, "#/lecture/triangle");
+  const [, beta, gamma] = await told(page, /α = ([\d.]+), β = ([\d.]+), γ = ([\d.]+)/);
+  for (const name of ["Normals", "u, v"]) await page.getByRole("button", { name, exact: true }).click();
+  const [u, v] = await told(page, /\(u, v\) = \(([\d.]+), ([\d.]+)\)/);
+  near(u, beta, 0.006, "u");
+  near(v, gamma, 0.006, "v");
 });
 
 await test("present", { viewport: { width: 1600, height: 900 } }, async (page) => {
@@ -123,6 +150,25 @@ await test("present", { viewport: { width: 1600, height: 900 } }, async (page) =
   await page.waitForFunction(() => document.querySelector("h1")?.textContent === "Triangle");
   await page.waitForTimeout(1500);
   await shot(page, "present-triangle");
+  // Keys turn the page even if a switch or a slider has the focus.
+  await page.getByRole("switch", { name: /^Common mistake/ }).click();
+  await page.keyboard.press("q");
+  await page.getByRole("button", { name: /all three weights equal/ }).click();
+  await page.waitForSelector(".answer");
+  await page.keyboard.press("PageDown");
+  await page.waitForFunction(() => document.querySelector("h1")?.textContent === "Transforms");
+  const sizes = await page.evaluate(() =>
+    [".lead", ".equation .symbols", ".equation .numbers"].map(
+      (name) => Number.parseFloat(getComputedStyle(document.querySelector(name)).fontSize) / innerHeight,
+    ),
+  );
+  // The last row reads letters of 1/40 of the height of the screen.
+  if (Math.min(...sizes) < 1 / 40) throw new Error(`small letters: ${sizes}`);
+  const { height, fits } = await page.evaluate(() => {
+    const chapter = document.querySelector(".chapter");
+    return { height: chapter.scrollHeight, fits: chapter.scrollHeight <= chapter.clientHeight + 1 };
+  });
+  if (!fits) throw new Error(`the slide is ${height} high`);
   await page.keyboard.press("Escape");
   await page.waitForSelector(".presents", { state: "detached" });
 });

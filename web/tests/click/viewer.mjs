@@ -29,14 +29,10 @@ await test("orbit makes coarse pictures and settles", wide, async (page) => {
   await page.mouse.down();
   for (let i = 1; i <= 12; i++) await page.mouse.move(x + 12 * i, y + 3 * i);
   await page.mouse.up();
-  await page.waitForFunction(
-    (old) => {
-      const hash = document.querySelector(".status .hash")?.textContent;
-      return hash && hash !== old;
-    },
-    before,
-    { timeout: 60_000 },
-  );
+  await page.waitForFunction((old) => {
+    const hash = document.querySelector(".status .hash")?.textContent;
+    return hash && hash !== old;
+  }, before);
 });
 
 await test("an error is underlined and mended", wide, async (page) => {
@@ -141,18 +137,14 @@ await test("denoised, and noise and time are told", wide, async (page) => {
   await finished(page);
   await page.getByLabel("Examples").selectOption("cornell-box.txt");
   await page.getByRole("tab", { name: "Camera and render" }).click();
-  await page.waitForFunction(() => /left/.test(document.querySelector(".status").textContent), null, {
-    timeout: 60_000,
-  });
+  await page.waitForFunction(() => /left/.test(document.querySelector(".status").textContent));
   await page.getByLabel("Samples").fill("4");
   await page.getByLabel("Samples").blur();
   await finished(page);
   await page.waitForFunction(() => /error 0\.\d+/.test(document.querySelector(".status").textContent));
   const hash = await page.locator(".status .hash").textContent();
   await page.getByRole("switch", { name: "Denoise the finished image" }).click();
-  await page.waitForFunction(() => /denoised/.test(document.querySelector(".status").textContent), null, {
-    timeout: 60_000,
-  });
+  await page.waitForFunction(() => /denoised/.test(document.querySelector(".status").textContent));
   if ((await page.locator(".status .hash").textContent()) !== hash) throw new Error("another hash");
   await shot(page, "denoised");
 });

@@ -1,9 +1,10 @@
 import { useEffect, useRef, useState } from "preact/hooks";
+import type { Session } from "../../engine/engine";
 import { fixed } from "../../ui/slider";
 import { draw } from "../../viewer/picture";
 import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
-import { Choice, Equation, Figure, Sym } from "../parts";
+import { Choice, Equation, Figure, Mistake, Sym, Wrong } from "../parts";
 import { PlaneName, Plot, type Scale } from "../plot";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
@@ -12,8 +13,22 @@ type Point = [number, number];
 const colors = ["var(--ray-shadowed)", "var(--ray-lit)", "var(--ray-camera)"] as const;
 const names = ["α", "β", "γ"] as const;
 const corner = ["a", "b", "c"] as const;
+/** Texture coordinates of the corners. */
+const uv: Point[] = [
+  [0, 0],
+  [1, 0],
+  [0, 1],
+];
+const shown = [
+  ["barycentric", "Colours"],
+  ["areas", "Areas"],
+  ["normals", "Normals"],
+  ["uv", "u, v"],
+] as const;
 const reach: [number, number] = [4.2, 2.35];
 const aspect = reach[0] / reach[1];
+
+const options = [{ name: "samples", value: "1" }];
 
 function BarycentricFigure() {
   const [corners, setCorners] = useState<[Point, Point, Point]>([
@@ -22,7 +37,7 @@ function BarycentricFigure() {
     [0.3, 1.9],
   ]);
   const [point, setPoint] = useState<Point>([0.1, -0.3]);
-  const [shows, setShows] = useState<"barycentric" | "areas">("barycentric");
+  const [shows, setShows] = useState<(typeof shown)[number][0]>("barycentric");
   const [a, b, c] = corners;
   const scene = sceneText({
     background: usePageBackground(),
@@ -33,15 +48,21 @@ function BarycentricFigure() {
     /^.*\n/,
     `OrthographicCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size ${2 * reach[0]} }\n`,
   );
-  const session = useScene(text, [{ name: "samples", value: "1" }]);
+  const session = useScene(text, options);
+  const meshText = text.replace(/Triangle \{.*\} \}/, "TriangleMesh { obj_file triangle.obj } }");
+  const mesh = useScene(meshText, options, { name: "triangle.obj", text: obj(corners) });
+  const interpolated = useCast(mesh, [...point, 4], [0, 0, -1], obj(corners))?.hit;
   const cast = useCast(session, [...point, 4], [0, 0, -1], text);
   const weights = names.map((name) => numberOf(cast, 0, name));
   const inside = weights.every((weight) => (weight ?? -1) >= 0);
+  const [wrong, setWrong] = useState(false);
+  const accepted = weights.slice(1).every((weight) => (weight ?? -1) >= 0);
+  const beyond = (to: Point): Point => [a[0] + 8 * (to[0] - a[0]), a[1] + 8 * (to[1] - a[1])];
   return (
     <Figure
       stage={
         <div class="layers">
-          {shows === "barycentric" && <Backdrop session={session} />}
+          {shows !== "areas" && <Backdrop key={shows} session={mesh} picture={shows} />}
           <Plot reach={reach} aspect={aspect} label="A triangle and a point in its plane">
             {(scale) => (
               <>
@@ -58,6 +79,13 @@ function BarycentricFigure() {
                       fill-opacity={0.32}
                     />
                   ))}
+                {wrong && (
+                  <polygon
+                    points={page([b, c, beyond(c), beyond(b)], scale)}
+                    fill="var(--ray-shadowed)"
+                    fill-opacity={0.18}
+                  />
+                )}
                 <polygon
                   points={page(corners, scale)}
                   fill="none"
@@ -112,15 +140,10 @@ function BarycentricFigure() {
         </div>
       }
       controls={
-        <Choice
-          label="Shown inside"
-          value={shows}
-          values={[
-            ["barycentric", "Weights as colour"],
-            ["areas", "Weights as areas"],
-          ]}
-          change={(value) => setShows(value)}
-        />
+        <>
+          <Choice label="Shown inside" value={shows} values={shown} change={(value) => setShows(value)} />
+          <Mistake name="test only β and γ" on={wrong} change={setWrong} />
+        </>
       }
     >
       <Equation
@@ -137,9 +160,14 @@ function BarycentricFigure() {
       </Equation>
       <Equation
         numbers={
-          inside
-            ? "all are positive: P is inside"
-            : `${names.filter((_, i) => (weights[i] ?? 0) < 0).join(" and ")} below 0: P is outside`
+          <>
+            {inside
+              ? "all are positive: P is inside"
+              : `${names.filter((_, i) => (weights[i] ?? 0) < 0).join(" and ")} below 0: P is outside`}
+            {wrong && (
+              <Wrong>{accepted ? "accepted" : "rejected"}; hits are found in the red area, too</Wrong>
+            )}
+          </>
         }
       >
         <Sym>α</Sym> + <Sym>β</Sym> + <Sym>γ</Sym> = 1, inside where none is negative
@@ -155,16 +183,44 @@ function BarycentricFigure() {
         <Sym>β</Sym> = |−<Sym vector>d</Sym>, <Sym vector>o</Sym>−<Sym vector>a</Sym>, <Sym vector>c</Sym>−
         <Sym vector>a</Sym>| / <Sym>D</Sym> (Cramer)
       </Equation>
+      <Equation
+        numbers={
+          interpolated ? (
+            <>
+              n = <b>({interpolated.shading_normal.map((x) => fixed(x)).join(", ")})</b>, (u, v) ={" "}
+              <b>({interpolated.uv?.map((x) => fixed(x)).join(", ")})</b>
+            </>
+          ) : (
+            "P is outside"
+          )
+        }
+      >
+        <Sym vector>n</Sym> = <Sym>α</Sym> <Sym vector>n</Sym>
+        <sub>a</sub> + <Sym>β</Sym> <Sym vector>n</Sym>
+        <sub>b</sub> + <Sym>γ</Sym> <Sym vector>n</Sym>
+        <sub>c</sub>, of length 1
+      </Equation>
     </Figure>
   );
 }
 
-/** Shows the rendered triangle, coloured by its barycentric coordinates. */
-function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
+/** Returns a mesh of one triangle, whose normals point outwards at its corners. */
+function obj(corners: Point[]): string {
+  const middle = [0, 1].map((i) => corners.reduce((sum, corner) => sum + (corner[i] ?? 0), 0) / 3);
+  return [
+    ...corners.map(([x, y]) => `v ${x} ${y} 0`),
+    ...corners.map(([x, y]) => `vn ${0.5 * (x - (middle[0] ?? 0))} ${0.5 * (y - (middle[1] ?? 0))} 1`),
+    ...uv.map(([u, v]) => `vt ${u} ${v}`),
+    "f 1/1/1 2/2/2 3/3/3",
+  ].join("\n");
+}
+
+/** Shows an image of the triangle in which an attribute of its corners is interpolated. */
+function Backdrop({ session, picture }: { session: Session; picture: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     session.send({ kind: "size", width: 1000, height: Math.round(1000 / aspect) });
-    session.send({ kind: "show", picture: "barycentric", stops: 0, tone: "none" });
+    session.send({ kind: "show", picture, stops: 0, tone: "none" });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
       // Pixels outside the triangle show the page.
@@ -174,7 +230,7 @@ function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
       }
       draw(canvas.current, event.head.width, event.head.height, pixels);
     });
-  }, [session]);
+  }, [session, picture]);
   return <canvas class="backdrop" ref={canvas} />;
 }
 

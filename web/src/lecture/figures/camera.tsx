@@ -4,7 +4,7 @@ import { fixed, Slider } from "../../ui/slider";
 import { draw } from "../../viewer/picture";
 import { usePageBackground, usePixel, useScene } from "../context";
 import { Arrow, Dot, Line, Name, Path } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
+import { Equation, Figure, Mistake, Sym, Wrong } from "../parts";
 import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
@@ -37,8 +37,11 @@ function CameraFigure() {
   });
   const [angle, setAngle] = useState(46);
   const [pixel, setPixel] = useState({ x: 96, y: 52 });
-  const angleRef = useRef(angle);
-  angleRef.current = angle;
+  const [wrong, setWrong] = useState(false);
+  // Without the division by 2, the image plane lies where it would for twice the angle.
+  const used = wrong ? Math.min(178, 2 * angle) : angle;
+  const angleRef = useRef(used);
+  angleRef.current = used;
 
   useEffect(() => {
     const look = (moving: boolean) =>
@@ -57,11 +60,11 @@ function CameraFigure() {
       if (event.kind === "picture" && canvas.current)
         draw(canvas.current, event.head.width, event.head.height, bytes);
     });
-  }, [image, angle]);
+  }, [image, used]);
 
-  const account = usePixel(image, pixel.x, pixel.y, `${angle} ${text}`);
+  const account = usePixel(image, pixel.x, pixel.y, `${used} ${text}`);
   const tree = account?.tree ?? null;
-  const distance = 1 / Math.tan((angle * Math.PI) / 360);
+  const distance = 1 / Math.tan((used * Math.PI) / 360);
   const [x, y] = [(2 * (pixel.x + 0.5)) / width - 1, (height - 2 * (pixel.y + 0.5)) / width];
   const place = (px: number, py: number): Vec =>
     add(at, add(mul(distance, forward), add(mul(px, right), mul(py, up))));
@@ -143,7 +146,7 @@ function CameraFigure() {
             label="angle"
             value={angle}
             min={10}
-            max={120}
+            max={wrong ? 85 : 120}
             step={1}
             text={`${angle}°`}
             change={setAngle}
@@ -166,13 +169,19 @@ function CameraFigure() {
             text={fixed(y)}
             change={(py) => setPixel({ ...pixel, y: height - 1 - py })}
           />
+          <Mistake name="tan(angle) instead of tan(angle / 2)" on={wrong} change={setWrong} />
         </>
       }
     >
       <Equation
         numbers={
           <>
-            1 / tan {angle / 2}° = <b>{row(tree, "D") ?? fixed(distance, 4)}</b>
+            1 / tan {angle / 2}° = <b>{fixed(1 / Math.tan((angle * Math.PI) / 360), 4)}</b>
+            {wrong && (
+              <Wrong>
+                1 / tan {angle}° = {row(tree, "D") ?? fixed(distance, 4)}: everything looks too small
+              </Wrong>
+            )}
           </>
         }
       >

@@ -3,7 +3,7 @@ import { flatten } from "../../explain/segments";
 import { fixed, Slider } from "../../ui/slider";
 import { usePageBackground, useScene, useTrace } from "../context";
 import { Handle } from "../draw";
-import { Choice, Equation, Figure, Sym } from "../parts";
+import { Choice, Equation, Figure, Mistake, Sym, Wrong } from "../parts";
 import { PlaneArrow, PlaneName, Plot } from "../plot";
 import { sceneText } from "../scenes";
 import type { Topic } from "../topic";
@@ -11,9 +11,10 @@ import type { Topic } from "../topic";
 type Side = "outside" | "inside";
 
 function GlassFigure() {
-  const [degrees, setDegrees] = useState(48);
+  const [degrees, setDegrees] = useState(38);
   const [index, setIndex] = useState(1.5);
   const [side, setSide] = useState<Side>("outside");
+  const [wrong, setWrong] = useState(false);
   const text = sceneText({
     background: usePageBackground(),
     materials: [`diffuseColor 0 0 0 specularColor 1 1 1 transparentColor 1 1 1 refractionIndex ${index}`],
@@ -44,6 +45,8 @@ function GlassFigure() {
   };
   const [ahead, away] = [end(through), end(back)];
   const width = (share: number) => 1 + 7 * share;
+  const wrongSine = here == null || there == null ? null : (there * Math.sin(angle)) / here;
+  const wrongAngle = Math.asin(Math.min(1, wrongSine ?? 0));
   return (
     <Figure
       stage={
@@ -96,6 +99,16 @@ function GlassFigure() {
                   to={ahead}
                   color="var(--ray-transmitted)"
                   width={width(1 - (mirrored ?? 0))}
+                />
+              )}
+              {wrong && wrongSine !== null && wrongSine <= 1 && (
+                <PlaneArrow
+                  scale={scale}
+                  from={[0, 0]}
+                  to={[2.1 * Math.sin(wrongAngle), -sign * 2.1 * Math.cos(wrongAngle)]}
+                  color="var(--ray-shadowed)"
+                  width={4}
+                  dashed
                 />
               )}
               <PlaneArrow scale={scale} from={from} to={[0, 0]} color="var(--ray-camera)" width={8} />
@@ -168,6 +181,7 @@ function GlassFigure() {
             ]}
             change={(value) => setSide(value)}
           />
+          <Mistake name="swap η and η′" on={wrong} change={setWrong} />
         </>
       }
     >
@@ -180,6 +194,15 @@ function GlassFigure() {
               {fixed(here ?? Number.NaN)} · {fixed(Math.sin(angle), 3)} / {fixed(there ?? Number.NaN)} ={" "}
               <b>{fixed(sine, 3)}</b>
               {total ? " > 1: total reflection" : `, θ′ = ${fixed((Math.asin(sine) * 180) / Math.PI, 1)}°`}
+              {wrong && wrongSine !== null && (
+                <Wrong>
+                  {fixed(wrongSine, 3)}
+                  {wrongSine > 1
+                    ? " > 1: total reflection"
+                    : `, θ′ = ${fixed((wrongAngle * 180) / Math.PI, 1)}°`}
+                  {wrongSine <= 1 && ": bent the wrong way"}
+                </Wrong>
+              )}
             </>
           )
         }

@@ -2,7 +2,7 @@ import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
 import { useCast, useScene } from "../context";
 import { Handle } from "../draw";
-import { Choice, Equation, Figure, Switch, Sym } from "../parts";
+import { Choice, Equation, Figure, Mistake, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
 import type { Topic } from "../topic";
 
@@ -89,7 +89,7 @@ function HomogeneousFigure() {
             ]}
             change={(kind) => setPoint([x, kind === "point" ? 1 : 0])}
           />
-          <Switch label="Forget to divide" on={undivided} change={setUndivided} />
+          <Mistake name="forget to divide" on={undivided} change={setUndivided} />
         </>
       }
     >

@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { flatten } from "../../explain/segments";
-import { add, type Eye, sub, unit, type Vec } from "../../explain/space";
+import { add, dot, type Eye, mul, sub, unit, type Vec } from "../../explain/space";
 import { fixed, Slider } from "../../ui/slider";
 import { usePageBackground, useScene, useTrace } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
+import { Equation, Figure, Mistake, Sym, Wrong } from "../parts";
 import { Point3 } from "../point";
 import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
@@ -13,6 +13,7 @@ import type { Topic } from "../topic";
 function MirrorFigure() {
   const background = usePageBackground();
   const [bounces, setBounces] = useState(2);
+  const [wrong, setWrong] = useState(false);
   const [from, setFrom] = useState<Vec>([-3.2, 0.55, 2.3]);
   const [aim, setAim] = useState<Vec>([-0.586, 0.07, 0.889]);
   const text = sceneText({
@@ -43,6 +44,8 @@ function MirrorFigure() {
   const first = rays.find(({ term }) => term.segment?.role === "reflected")?.term ?? null;
   const row = first?.rows.find((known) => known.name === "r") ?? null;
   const end = rays[0]?.term.segment?.to ?? aim;
+  const n = first ? (rays[0]?.term.normal?.[1] ?? null) : null;
+  const wrongRay = n && sub(direction, mul(dot(direction, n), n));
   return (
     <Figure
       stage={
@@ -71,6 +74,17 @@ function MirrorFigure() {
                   </g>
                 );
               })}
+              {wrong && wrongRay && first?.segment && (
+                <Arrow
+                  view={view}
+                  from={first.segment.from}
+                  dir={unit(wrongRay)}
+                  length={1.6}
+                  color="var(--ray-shadowed)"
+                  width={4}
+                  dashed
+                />
+              )}
               {first?.segment && (
                 <Name view={view} at={add(first.segment.from, [0, 0.1, 0])} dy={-26}>
                   P
@@ -92,15 +106,18 @@ function MirrorFigure() {
         </Stage>
       }
       controls={
-        <Slider
-          label="levels"
-          value={bounces}
-          min={0}
-          max={8}
-          step={1}
-          text={String(bounces)}
-          change={setBounces}
-        />
+        <>
+          <Slider
+            label="levels"
+            value={bounces}
+            min={0}
+            max={8}
+            step={1}
+            text={String(bounces)}
+            change={setBounces}
+          />
+          <Mistake name="forget the factor 2" on={wrong} change={setWrong} />
+        </>
       }
     >
       <Equation
@@ -108,6 +125,9 @@ function MirrorFigure() {
           row ? (
             <>
               {row.numbers} = <b>{row.result}</b>
+              {wrong && wrongRay && (
+                <Wrong>({wrongRay.map((x) => fixed(x, 3)).join(", ")}): the ray stays on the surface</Wrong>
+              )}
             </>
           ) : (
             "this ray hits no mirror, or the maximum depth is reached"

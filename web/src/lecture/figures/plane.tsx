@@ -2,8 +2,8 @@ import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
 import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
-import { PlaneArrow, PlaneName, Plot } from "../plot";
+import { Equation, Figure, Mistake, Sym, Wrong } from "../parts";
+import { PlaneArrow, PlaneName, Plot, WrongHit } from "../plot";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
@@ -14,6 +14,7 @@ function PlaneFigure() {
   const [tip, setTip] = useState<Point>([-1.9, 1.2]);
   const [foot, setFoot] = useState<Point>([0.4, -0.9]);
   const [turn, setTurn] = useState(1.35);
+  const [wrong, setWrong] = useState(false);
   const n: Point = [Math.cos(turn), Math.sin(turn)];
   const offset = n[0] * foot[0] + n[1] * foot[1];
   const text = sceneText({
@@ -28,6 +29,7 @@ function PlaneFigure() {
   const shown = t != null && Math.abs(t) < 60;
   const hit: Point = shown ? [origin[0] + t * d[0], origin[1] + t * d[1]] : origin;
   const forward = shown && t > 0;
+  const wrongT = no == null || nd == null ? null : (-offset - no) / nd;
   const along = (s: number): Point => [foot[0] - n[1] * s, foot[1] + n[0] * s];
   return (
     <Figure
@@ -101,6 +103,13 @@ function PlaneFigure() {
                     </PlaneName>
                   </>
                 )}
+                {wrong && wrongT !== null && Math.abs(wrongT) < 60 && (
+                  <WrongHit
+                    scale={scale}
+                    at={[origin[0] + wrongT * d[0], origin[1] + wrongT * d[1]]}
+                    name={`t = ${fixed(wrongT)}`}
+                  />
+                )}
                 <Handle
                   x={scale.x(foot[0] + n[0])}
                   y={scale.y(foot[1] + n[1])}
@@ -141,6 +150,7 @@ function PlaneFigure() {
           }}
         </Plot>
       }
+      controls={<Mistake name="n · p + offset = 0" on={wrong} change={setWrong} />}
     >
       <Equation
         numbers={
@@ -150,6 +160,11 @@ function PlaneFigure() {
             <>
               ({fixed(offset)} − {sign(no)}) / {sign(nd)} = <b>{fixed(t, 3)}</b>
               {t < 0 && " < 0: behind the origin, no hit"}
+              {wrong && wrongT !== null && (
+                <Wrong>
+                  ({fixed(-offset)} − {sign(no)}) / {sign(nd)} = {fixed(wrongT, 3)}: not on the plane
+                </Wrong>
+              )}
             </>
           )
         }

@@ -51,7 +51,7 @@ function ProjectionFigure() {
               aria-label="The image: three spheres of equal size, one behind the other"
             />
           </div>
-          <Plot reach={[4.4, 4.3]} middle={[0, -1.6]} aspect={width / height} label="The rays from above">
+          <Plot reach={[4.4, 5]} middle={[0, 1.4]} aspect={width / height} label="The rays from above">
             {(scale) => (
               <>
                 {[-1, -0.5, 0, 0.5, 1].map((x) => {
@@ -81,7 +81,7 @@ function ProjectionFigure() {
                   stroke="var(--ink)"
                   stroke-width={3}
                 />
-                {!parallel && distance < 3.4 && (
+                {!parallel && distance < 3.5 && (
                   <>
                     <circle cx={scale.x(0)} cy={scale.y(-distance)} r={6} fill="var(--ink)" />
                     <PlaneName scale={scale} at={[0, -distance]}>

@@ -117,7 +117,8 @@ function RayFigure() {
         numbers={
           hit ? (
             <>
-              the first hit lies at t = <b>{fixed(hit.t, 3)}</b>
+              the first hit lies at t = <b>{fixed(hit.t, 3)}</b>, at a distance of t |d| ={" "}
+              <b>{fixed(hit.t * length(direction), 3)}</b>
             </>
           ) : (
             "this ray hits nothing"

@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
-import { add, type Eye, mul, sub, unit, type Vec } from "../../explain/space";
+import { add, dot, type Eye, length, mul, sub, unit, type Vec } from "../../explain/space";
 import type { Term } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
 import { useCast, usePageBackground, useScene, useTrace } from "../context";
 import { Arrow, Dot, Handle, Name } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
+import { Equation, Figure, Mistake, Sym, Wrong } from "../parts";
 import { Point3 } from "../point";
 import { sceneText } from "../scenes";
 import { Stage } from "../stage";
@@ -12,11 +12,12 @@ import type { Topic } from "../topic";
 
 function ShadingFigure() {
   const background = usePageBackground();
-  const [lamp, setLamp] = useState<Vec>([-2.7, 1.9, 1.1]);
+  const [lamp, setLamp] = useState<Vec>([-2.7, 1.5, 1.1]);
   const [toward, setToward] = useState<Vec>(unit([-0.12, 0.42, 0.9]));
   const [diffuse, setDiffuse] = useState(0.75);
   const [specular, setSpecular] = useState(0.5);
   const [exponent, setExponent] = useState(24);
+  const [wrong, setWrong] = useState(false);
   const text = sceneText({
     background,
     ambient: "0.08 0.08 0.09",
@@ -43,7 +44,8 @@ function ShadingFigure() {
   const point = mul(1.35, toward);
   const cast = useCast(session, mul(4, point), mul(-1, toward), text);
   const n: Vec = cast?.hit?.normal ?? toward;
-  const l = unit(sub(lamp, point));
+  const away = sub(lamp, point);
+  const l = unit(away);
   const v = unit(sub(seenFrom, point));
   const h = unit(add(l, v));
   const account = useTrace(probe, seenFrom, unit(sub(point, seenFrom)), text);
@@ -68,8 +70,8 @@ function ShadingFigure() {
                   view={view}
                   from={point}
                   dir={l}
-                  color="var(--ray-scattered)"
-                  length={1.25}
+                  color={wrong ? "var(--ray-shadowed)" : "var(--ray-scattered)"}
+                  length={wrong ? length(away) : 1.25}
                   width={3.5}
                 />
                 <Name view={view} at={add(point, mul(1.25, l))} color="var(--ray-scattered)">
@@ -142,6 +144,7 @@ function ShadingFigure() {
             text={String(exponent)}
             change={setExponent}
           />
+          <Mistake name="l not of length 1" on={wrong} change={setWrong} />
         </>
       }
     >
@@ -151,7 +154,13 @@ function ShadingFigure() {
             "the light is behind the surface"
           ) : (
             <>
-              max(0, <b>{fixed(nl, 3)}</b>) · k_d
+              {fixed(diffuse)} · max(0, <b>{fixed(nl, 3)}</b>) = <b>{fixed(diffuse * nl, 3)}</b>
+              {wrong && (
+                <Wrong>
+                  {fixed(diffuse)} · {fixed(dot(n, away), 3)} = {fixed(diffuse * dot(n, away), 3)}: brighter,
+                  the farther the light
+                </Wrong>
+              )}
             </>
           )
         }

@@ -3,7 +3,7 @@ import { add, type Eye, length, mul, sub, unit, type Vec } from "../../explain/s
 import { fixed, Slider, short } from "../../ui/slider";
 import { useCast, usePageBackground, useScene } from "../context";
 import { Dot, Line, Name } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
+import { Equation, Figure, Mistake, Sym } from "../parts";
 import { Point3 } from "../point";
 import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
@@ -14,6 +14,7 @@ function ShadowFigure() {
   const [lamp, setLamp] = useState<Vec>([-1.7, 2.3, 0.7]);
   const [point, setPoint] = useState<Vec>([1.5, -1, -0.4]);
   const [radius, setRadius] = useState(0.75);
+  const [wrong, setWrong] = useState(false);
   const text = sceneText({
     background,
     ambient: "0.16 0.16 0.18",
@@ -38,9 +39,12 @@ function ShadowFigure() {
   const start = add(point, [0, 1e-4, 0]);
   const cast = useCast(session, start, l, text);
   const hits = (cast?.tests ?? []).filter(
-    (test) => test.t != null && test.t > 0 && test.t < distance && test.object !== 0,
+    ({ t, object }) => t != null && t > 0 && (wrong || t < distance) && object !== 0,
   );
-  const blocker = hits.sort((a, b) => (a.t ?? 0) - (b.t ?? 0))[0] ?? null;
+  const all = cast?.tests.length ?? 0;
+  // Any hit ends the search, in the order of the text.
+  const any = hits[0] && cast ? cast.tests.indexOf(hits[0]) + 1 : all;
+  const blocker = hits.toSorted((a, b) => (a.t ?? 0) - (b.t ?? 0))[0] ?? null;
   const t = blocker?.t ?? null;
   const color = blocker ? "var(--ray-shadowed)" : "var(--ray-lit)";
   return (
@@ -93,34 +97,49 @@ function ShadowFigure() {
         </Stage>
       }
       controls={
-        <Slider
-          label="size of the ball"
-          value={radius}
-          min={0.2}
-          max={1.1}
-          step={0.01}
-          text={fixed(radius)}
-          change={setRadius}
-        />
+        <>
+          <Slider
+            label="size of the ball"
+            value={radius}
+            min={0.2}
+            max={1.1}
+            step={0.01}
+            text={fixed(radius)}
+            change={setRadius}
+          />
+          <Mistake name="forget where the light is" on={wrong} change={setWrong} />
+        </>
       }
     >
       <Equation
         numbers={
           blocker ? (
             <>
-              <b>{fixed(t ?? 0, 3)}</b> &lt; {fixed(distance, 3)}: the light is occluded
+              <b>{fixed(t ?? 0, 3)}</b> {(t ?? 0) < distance ? "<" : ">"} {fixed(distance, 3)}:{" "}
+              {(t ?? 0) < distance
+                ? "the light is occluded"
+                : "taken for a shadow, but it is behind the light"}
             </>
           ) : (
-            <>no hit with t &lt; {fixed(distance, 3)}: the light is visible</>
+            <>
+              no hit with t &lt; {wrong ? "∞" : fixed(distance, 3)}: the light is visible
+              {wrong && ". Drag it between P and the ball"}
+            </>
           )
         }
       >
         shadow where a hit has 0 &lt; <Sym>t</Sym> &lt; |<Sym vector>light</Sym> − <Sym vector>P</Sym>|
       </Equation>
       <Equation
-        numbers={cast?.tests
-          .map((test) => `${test.name.split(" ")[0]}: ${test.t == null ? "–" : short(test.t, 3)}`)
-          .join(", ")}
+        numbers={
+          <>
+            any hit: <b>{any}</b> {any === 1 ? "test" : "tests"}, closest hit: <b>{all}</b> (
+            {cast?.tests
+              .map((test) => `${test.name.split(" ")[0]} ${test.t == null ? "–" : short(test.t, 3)}`)
+              .join(", ")}
+            )
+          </>
+        }
       >
         any hit will do: the closest is not needed
       </Equation>

@@ -2,8 +2,8 @@ import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
 import { useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
-import { Choice, Equation, Figure, Sym } from "../parts";
-import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
+import { Choice, Equation, Figure, Mistake, Sym, Wrong } from "../parts";
+import { PlaneArrow, PlaneName, Plot, type Scale, WrongHit } from "../plot";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
@@ -42,9 +42,10 @@ export function combined(operation: Operation, a: Interval | null, b: Interval |
 function SolidsFigure() {
   const [operation, setOperation] = useState<Operation>("Difference");
   const [centers, setCenters] = useState<[Point, Point]>([
-    [-0.35, 0.35],
-    [0.9, 0.65],
+    [0.45, 0.6],
+    [-0.9, 0.3],
   ]);
+  const [wrong, setWrong] = useState(false);
   const [origin, setOrigin] = useState<Point>([-3.4, 0.25]);
   const [tip, setTip] = useState<Point>([-2.4, 0.32]);
   const d: Point = [tip[0] - origin[0], tip[1] - origin[1]];
@@ -62,6 +63,7 @@ function SolidsFigure() {
   ];
   const result = combined(operation, a, b);
   const t = cast?.hit?.t ?? null;
+  const wrongT = Math.min(...[...(a ?? []), ...(b ?? [])].filter((end) => end > 0));
   const at = (s: number): Point => [origin[0] + s * d[0], origin[1] + s * d[1]];
   return (
     <Figure
@@ -115,6 +117,9 @@ function SolidsFigure() {
                   </PlaneName>
                 </>
               )}
+              {wrong && Number.isFinite(wrongT) && (
+                <WrongHit scale={scale} at={at(wrongT)} name={`t = ${fixed(wrongT)}`} />
+              )}
               <Bars scale={scale} rows={[a ? [a] : [], b ? [b] : [], result]} />
               {centers.map((center, i) => (
                 <Handle
@@ -149,16 +154,19 @@ function SolidsFigure() {
         </Plot>
       }
       controls={
-        <Choice
-          label="Operation"
-          value={operation}
-          values={[
-            ["Merge", "A ∪ B"],
-            ["Intersection", "A ∩ B"],
-            ["Difference", "A − B"],
-          ]}
-          change={(value) => setOperation(value)}
-        />
+        <>
+          <Choice
+            label="Operation"
+            value={operation}
+            values={[
+              ["Merge", "A ∪ B"],
+              ["Intersection", "A ∩ B"],
+              ["Difference", "A − B"],
+            ]}
+            change={(value) => setOperation(value)}
+          />
+          <Mistake name="take the closest hit of A and B" on={wrong} change={setWrong} />
+        </>
       }
     >
       <Equation
@@ -173,13 +181,13 @@ function SolidsFigure() {
       </Equation>
       <Equation
         numbers={
-          t === null ? (
-            "the ray misses the solid"
-          ) : (
-            <>
-              the solid is hit at <b>{fixed(t, 3)}</b>
-            </>
-          )
+          <>
+            {t === null ? "the ray misses the solid" : "the solid is hit at "}
+            {t !== null && <b>{fixed(t, 3)}</b>}
+            {wrong && Number.isFinite(wrongT) && Math.abs(wrongT - (t ?? 0)) > 1e-4 && (
+              <Wrong>{fixed(wrongT, 3)}: not on the solid</Wrong>
+            )}
+          </>
         }
       >
         the hit is the first end with <Sym>t</Sym> &gt; 0

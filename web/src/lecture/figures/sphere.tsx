@@ -2,8 +2,8 @@ import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
 import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
-import { Equation, Figure, Sym } from "../parts";
-import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
+import { Equation, Figure, Mistake, Sym, Wrong } from "../parts";
+import { PlaneArrow, PlaneName, Plot, type Scale, WrongHit } from "../plot";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
@@ -14,6 +14,7 @@ function SphereFigure() {
   const [origin, setOrigin] = useState<Point>([-3.4, 0.3]);
   const [tip, setTip] = useState<Point>([-2, 0.45]);
   const [radius, setRadius] = useState(1.35);
+  const [wrong, setWrong] = useState(false);
   const text = sceneText({
     background: usePageBackground(),
     materials: [materialPresets.clay],
@@ -25,6 +26,7 @@ function SphereFigure() {
   const [a, b, c, delta, t1, t2] = ["a", "b", "c", "Δ", "t₁", "t₂"].map((name) => numberOf(cast, 0, name));
   const roots = [t1, t2].filter((t) => t != null);
   const first = cast?.hit?.t ?? null;
+  const wrongRoots = b == null || c == null ? [] : rootsFor(1, b, c);
   const at = (t: number): Point => [origin[0] + t * d[0], origin[1] + t * d[1]];
   return (
     <Figure
@@ -76,6 +78,8 @@ function SphereFigure() {
                     </g>
                   );
                 })}
+                {wrong &&
+                  wrongRoots.map((t, i) => <WrongHit key={i} scale={scale} at={at(t)} name={fixed(t)} />)}
                 <Handle
                   x={scale.x(center[0] + radius * Math.SQRT1_2)}
                   y={scale.y(center[1] + radius * Math.SQRT1_2)}
@@ -119,6 +123,7 @@ function SphereFigure() {
           )}
         </div>
       }
+      controls={<Mistake name="a = 1, although d is not of length 1" on={wrong} change={setWrong} />}
     >
       <Equation
         numbers={
@@ -138,13 +143,20 @@ function SphereFigure() {
       </Equation>
       <Equation
         numbers={
-          roots.length === 2 ? (
-            <>
-              <b>{fixed(roots[0] ?? 0, 3)}</b> and <b>{fixed(roots[1] ?? 0, 3)}</b>
-            </>
-          ) : (
-            "no real root: the line misses the sphere"
-          )
+          <>
+            {roots.length === 2 ? (
+              <>
+                <b>{fixed(roots[0] ?? 0, 3)}</b> and <b>{fixed(roots[1] ?? 0, 3)}</b>
+              </>
+            ) : (
+              "no real root: the line misses the sphere"
+            )}
+            {wrong && (
+              <Wrong>
+                {wrongRoots.map((t) => fixed(t, 3)).join(" and ") || "no root"}: not on the sphere
+              </Wrong>
+            )}
+          </>
         }
       >
         <Sym>t</Sym> = (−<Sym>b</Sym> ± √<Sym>Δ</Sym>) / 2<Sym>a</Sym>
@@ -163,6 +175,12 @@ function SphereFigure() {
       </Equation>
     </Figure>
   );
+}
+
+/** Returns the real roots of a quadratic equation. */
+function rootsFor(a: number, b: number, c: number): number[] {
+  const root = Math.sqrt(b * b - 4 * a * c);
+  return Number.isNaN(root) ? [] : [(-b - root) / (2 * a), (-b + root) / (2 * a)];
 }
 
 function factor(x: number | null | undefined): string {

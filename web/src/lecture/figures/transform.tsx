@@ -2,7 +2,7 @@ import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
 import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
-import { Equation, Figure, Switch, Sym } from "../parts";
+import { Equation, Figure, Mistake, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
@@ -117,7 +117,7 @@ function TransformFigure() {
             text={fixed(move)}
             change={setMove}
           />
-          <Switch label="Common mistake: normalise M⁻¹ d" on={wrong} change={setWrong} />
+          <Mistake name="normalise M⁻¹ d" on={wrong} change={setWrong} />
         </>
       }
     >
