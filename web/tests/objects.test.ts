@@ -13,6 +13,7 @@ test("the object at the cursor is the one whose block contains it", () => {
   expect(objectAt(text, objects, text.indexOf("radius"))).toBe(0);
   expect(objectAt(text, objects, text.indexOf("max"))).toBe(1);
   expect(objectAt(text, objects, text.indexOf("Box"))).toBe(1);
+  expect(objectAt(text, objects, text.indexOf("1 }") + 3)).toBe(0);
 });
 
 test("outside of all objects there is none", () => {

@@ -14,12 +14,12 @@ export function objectAt(text: string, objects: SceneItem[], position: number): 
   return (found as { index: number } | null)?.index ?? null;
 }
 
-/** Returns true if a text closes the first block that it opens. */
+/** Returns true if a text closes the first block that it opens, and continues on another line. */
 function isClosed(text: string): boolean {
   let depth = 0;
-  for (const letter of text) {
-    if (letter === "{") depth++;
-    else if (letter === "}" && --depth <= 0) return true;
+  for (let i = 0; i < text.length; i++) {
+    if (text[i] === "{") depth++;
+    else if (text[i] === "}" && --depth <= 0) return text.includes("\n", i);
   }
   return false;
 }

@@ -45,7 +45,7 @@ export function Lecture({ engine, name, topics, topic }: Props) {
       if (event.key === "ArrowRight" || event.key === "PageDown") go(at + 1);
       else if (event.key === "ArrowLeft" || event.key === "PageUp") go(at - 1);
       else if (event.key === "p") present(!presents);
-      else if (event.key === "q" && presents) setAsks(!asks);
+      else if (event.key === "q") setAsks((on) => !on);
       else if (event.key === "Escape") present(false);
       else return;
       event.preventDefault();

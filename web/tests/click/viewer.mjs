@@ -177,3 +177,33 @@ await test("the camera is written into the text", wide, async (page) => {
   );
   await page.getByRole("button", { name: "Write into the scene", disabled: true }).waitFor();
 });
+
+await test("a term, its ray, its line and its object are shown together", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const box = await page.locator(".picture canvas").boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+  // The text shows the line of the object.
+  await page.waitForFunction(() =>
+    document.querySelector(".cm-activeLine")?.textContent?.includes("center -0.75"),
+  );
+  await page.locator(".tree .title", { hasText: "Mirrored ray hits Plane" }).first().hover();
+  await page.waitForFunction(() => document.querySelector(".cm-marked")?.textContent?.includes("Plane {"));
+  const length = await page
+    .locator(".overlay line")
+    .last()
+    .evaluate((line) => line.getTotalLength());
+  if (!(length > 50)) throw new Error(`the ray in the image is ${length} long`);
+  await shot(page, "hover");
+  // The image outlines the object at the cursor, and changes with the text.
+  await page.locator(".cm-line", { hasText: "center 1.15" }).click();
+  await page.waitForSelector(".overlay .outline");
+  await shot(page, "outline");
+  const color = () => page.locator("header.pixel p").textContent();
+  const before = await color();
+  await page.locator(".cm-line", { hasText: "center -0.75" }).click();
+  await page.keyboard.press("End");
+  for (let i = 0; i < 6; i++) await page.keyboard.press("Backspace");
+  await page.keyboard.type("0.2 }");
+  await page.waitForFunction((old) => document.querySelector("header.pixel p").textContent !== old, before);
+});

@@ -227,16 +227,14 @@ function CamerasFigure() {
       </Equation>
       <Equation
         numbers={
-          originCount === 1 ? (
-            "all rays start at one eye point"
-          ) : (
-            <>
-              they start at <b>{originCount}</b> points
-            </>
-          )
+          <>
+            {originCount === 1 ? "all rays start at one eye point" : "they start at "}
+            {originCount > 1 && <b>{originCount}</b>}
+            {originCount > 1 && " points"}. {kind.rule}
+          </>
         }
       >
-        {kind.rule}
+        where its rays start
       </Equation>
     </Figure>
   );
