@@ -8,6 +8,7 @@ use crate::terminal::print_error_line;
 use crate::{progress, report};
 use durer::format::folder::FolderSource;
 use durer::image::{Destination, Display, Format, save_all};
+use durer::options::memory::Memory;
 use durer::render::{Panicked, PartError, PartialRender, RenderEvent};
 use std::cell::Cell;
 use std::path::Path;
@@ -268,6 +269,9 @@ pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
 
 fn read_part_of(path: &Path) -> Result<Result<PartialRender, PartError>, Failure> {
     let name = path.display().to_string();
-    let bytes = FolderSource::new(".").budget(u64::MAX).read_path(path, &name).map_err(report::unreadable)?;
+    let bytes = FolderSource::new(".")
+        .budget(Memory::default().bytes().unwrap_or(u64::MAX))
+        .read_path(path, &name)
+        .map_err(report::unreadable)?;
     Ok(PartialRender::read(&bytes))
 }

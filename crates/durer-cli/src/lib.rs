@@ -42,7 +42,7 @@ mod words;
 
 use args::{Cli, Command};
 use clap::{CommandFactory, Parser};
-use failure::invalid_input;
+use failure::{Failure, invalid_input};
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -58,6 +58,9 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     progress::handle_signals();
     if let Err(error) = durer::bvh::SimdLevel::from_environment() {
         return invalid_input(error.to_string()).report();
+    }
+    if let Err(message) = durer::options::memory::check_address_space() {
+        return Failure::Other(anyhow::anyhow!(message)).report();
     }
     durer::threads::prepare();
     // If `durer` is started under the name of an official program, it emulates that program.
@@ -101,12 +104,15 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
 fn parsed(words: Vec<OsString>) -> Cli {
     Cli::try_parse_from(&words).unwrap_or_else(|error| {
         let error = option_hints::with_hint(error, &words, &Cli::command());
-        if error.use_stderr() || std::io::stdout().is_terminal() {
-            // Ignore errors because a closed terminal cannot show a message.
-            let _ = error.print();
-            terminal::end(u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
+        let (rendered, code) = (error.render(), u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
+        let text = |is_terminal: bool| match is_terminal && terminal::has_styles() {
+            true => rendered.ansi().to_string(),
+            false => rendered.to_string(),
+        };
+        match error.use_stderr() {
+            true => terminal::print_error_line(text(std::io::stderr().is_terminal()).trim_end()),
+            false => terminal::print_line(text(std::io::stdout().is_terminal()).trim_end()),
         }
-        terminal::print_line(error.render().to_string().trim_end());
-        terminal::end(0)
+        terminal::end(code)
     })
 }

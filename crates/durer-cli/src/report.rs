@@ -1,7 +1,7 @@
 //! Prints diagnostics on the terminal.
 
 use crate::failure::Failure;
-use crate::terminal::print_error_line;
+use crate::terminal::{controls_terminal, print_error_line, printable};
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
 use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
@@ -45,7 +45,7 @@ pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnosti
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
         // Leave out the text of files that have no diagnostic.
         let used = diagnostics.iter().any(|d| spans(d).any(|span| span.file == file));
-        shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
+        shown.add(printable(name).into_owned(), if used { text(bytes) } else { String::new() });
     }
     for diagnostic in diagnostics {
         // Ignore errors because a closed stream cannot show a message.
@@ -113,7 +113,7 @@ fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
         '\r' => " ".into(),
-        _ if c.is_control() => "?".repeat(c.len_utf8()),
+        _ if controls_terminal(c) => "?".repeat(c.len_utf8()),
         _ => c.to_string(),
     };
     match std::str::from_utf8(bytes) {
@@ -183,13 +183,13 @@ fn show(diagnostic: &Diagnostic, files: &Files) -> Shown<usize> {
     let range = |span: Span| span.start as usize..span.end as usize;
     let mut labels = Vec::new();
     if let Some(span) = diagnostic.span {
-        labels.push(Label::primary(span.file as usize, range(span)).with_message(&diagnostic.label));
+        labels.push(Label::primary(span.file as usize, range(span)).with_message(printable(&diagnostic.label)));
     }
     if let Some((span, what)) = diagnostic.related.as_ref().filter(|(span, _)| fits(diagnostic.span, *span, files)) {
-        labels.push(Label::secondary(span.file as usize, range(*span)).with_message(what));
+        labels.push(Label::secondary(span.file as usize, range(*span)).with_message(printable(what)));
     }
-    let effect = diagnostic.effect.iter().map(|effect| format!("effect: {effect}"));
-    let notes = effect.chain(diagnostic.help.iter().map(|help| format!("help: {help}"))).collect();
-    let shown = Shown::new(level).with_message(&diagnostic.message).with_labels(labels).with_notes(notes);
+    let effect = diagnostic.effect.iter().map(|effect| format!("effect: {}", printable(effect)));
+    let notes = effect.chain(diagnostic.help.iter().map(|help| format!("help: {}", printable(help)))).collect();
+    let shown = Shown::new(level).with_message(printable(&diagnostic.message)).with_labels(labels).with_notes(notes);
     if diagnostic.code.is_empty() { shown } else { shown.with_code(diagnostic.code) }
 }

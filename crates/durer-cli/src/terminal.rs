@@ -1,6 +1,7 @@
 //! Prints lines on standard output and standard error.
 
-use std::io::{ErrorKind, Write};
+use std::borrow::Cow;
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -45,10 +46,47 @@ pub fn has_standard_output() -> bool {
     !CLOSED.load(Relaxed)
 }
 
+/// Returns true for characters that could control the terminal or change the order of the text:
+/// control characters except line breaks and tabs, and marks of text direction.
+pub fn controls_terminal(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\t')
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Returns true if terminals should show colours and bold text. See <https://no-color.org>.
+pub fn has_styles() -> bool {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    set("NO_COLOR").is_none() && set("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Replaces characters that could control the terminal by escapes such as `\u{1b}`, because names of
+/// files and texts in files can contain them. Changes of the text's style (`ESC [ ... m`), which
+/// this program prints itself, are kept.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(controls_terminal) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len());
+    for (at, c) in text.char_indices() {
+        match controls_terminal(c) && !(c == '\u{1b}' && begins_style(&text[at + 1..])) {
+            true => plain.extend(c.escape_unicode()),
+            false => plain.push(c),
+        }
+    }
+    Cow::Owned(plain)
+}
+
+/// Returns true if the rest of an escape sequence only changes the style of the text.
+fn begins_style(rest: &str) -> bool {
+    let numbers = rest.strip_prefix('[').and_then(|rest| rest.split_once('m')).map(|(numbers, _)| numbers);
+    numbers.is_some_and(|numbers| numbers.len() < 16 && numbers.bytes().all(|b| b.is_ascii_digit() || b == b';'))
+}
+
 /// Prints a line on standard output. A closed pipe is not an error because the reader already has
 /// all that it needs.
 pub fn print_line(line: &str) {
     let written = match has_standard_output() {
+        true if std::io::stdout().is_terminal() => writeln!(std::io::stdout(), "{}", printable(line)),
         true => writeln!(std::io::stdout(), "{line}"),
         false => Err(std::io::Error::other("the stream is closed")),
     };
@@ -63,5 +101,16 @@ pub fn print_line(line: &str) {
 
 /// Prints a line on standard error. Errors are ignored because there is nowhere to report them.
 pub fn print_error_line(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", printable(line));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn names_cannot_control_the_terminal() {
+        assert_eq!(printable("a\tb\nDürer \u{1b}[1;2m漢\u{1b}[0m"), "a\tb\nDürer \u{1b}[1;2m漢\u{1b}[0m");
+        assert_eq!(printable("x\u{1b}[2J\u{7f}\u{9b}\u{202e}.png"), "x\\u{1b}[2J\\u{7f}\\u{9b}\\u{202e}.png");
+    }
 }

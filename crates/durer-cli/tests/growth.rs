@@ -251,3 +251,31 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
         assert!(matches!(output.code, Some(0..=2 | 124)), "{line}: {:?} {}", output.code, output.err);
     }
 }
+
+#[test]
+fn scene_file_larger_than_memory_is_an_error() {
+    let folder = TestFolder::new();
+    // The file is sparse, so that it takes no space on the disk.
+    for name in ["big.txt", "big.ply", "big.gltf"] {
+        std::fs::File::create(folder.path(name)).unwrap().set_len(2 << 30).unwrap();
+        let output = folder.shell(&format!("ulimit -v 1500000; timeout 20 $DURER info {name}"));
+        assert_eq!(output.code, Some(2), "{name}: {}", output.err);
+        assert!(output.err.contains("is too large: 2147483648 bytes"), "{name}: {}", output.err);
+    }
+}
+
+#[test]
+fn too_little_address_space_is_an_error() {
+    let folder = TestFolder::new();
+    for limit in [90_000, 150_000, 240_000] {
+        for line in ["render scene.txt -o o.png --size 64x64 -q", "check scene.txt", "lesson scene.txt -o l.html"] {
+            let output = folder.shell(&format!("ulimit -v {limit}; RAYON_NUM_THREADS=2 timeout 20 $DURER {line}"));
+            assert!(matches!(output.code, Some(0 | 1)), "{limit} {line}: {:?} {}", output.code, output.err);
+            assert!(
+                output.code == Some(0) || output.err.contains("MiB of address space"),
+                "{limit} {line}: {}",
+                output.err
+            );
+        }
+    }
+}

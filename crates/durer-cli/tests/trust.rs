@@ -349,3 +349,28 @@ fn calling_thread_does_all_work_without_threads() {
     let _ = run(1, "lesson scene.txt -o lesson --size 16x12 --samples 1");
     let _ = run(1, "course -input scene.txt -size 20 20 -output o.tga -grid 5 5 5 -visualize_grid");
 }
+
+#[test]
+fn photographs_larger_than_memory_are_refused() {
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("photos")).unwrap();
+    folder.write("photos/a.png", png(12_000, b""));
+    std::fs::copy(folder.path("photos/a.png"), folder.path("photos/b.png")).unwrap();
+    let output = folder.shell("ulimit -v 900000; export RAYON_NUM_THREADS=2; $DURER photo match photos -o m.json -q");
+    assert_eq!(output.code, Some(2), "{}", output.err);
+    assert!(output.err.contains("bytes of memory, more than the limit"), "{}", output.err);
+}
+
+#[test]
+fn names_and_texts_cannot_control_the_terminal() {
+    let folder = TestFolder::new();
+    folder.write(
+        "scene.txt",
+        SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file a\u{1b}]0;x\u{7}\u{202e}.obj }"),
+    );
+    for line in ["info scene.txt --dialect durer", "render gone\u{1b}[2J.txt -o a.png"] {
+        let output = folder.run(line);
+        assert!(!output.err.contains(['\u{1b}', '\u{7}', '\u{202e}']), "{:?}", output.err);
+        assert!(output.err.contains("\\u{1b}"), "{:?}", output.err);
+    }
+}

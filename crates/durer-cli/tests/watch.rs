@@ -176,3 +176,19 @@ fn ended(folder: &TestFolder, mut child: Child, codes: &[i32]) {
         folder.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
     assert!(left.is_empty(), "{left:?}");
 }
+
+#[test]
+fn save_that_keeps_size_and_time_is_seen() {
+    let folder = TestFolder::new();
+    let mut child = watching(&folder);
+    shows_what_is_there(&folder, &mut child, "the start");
+    // `cp -p`, `tar` and `rsync` set the time of the file that they overwrite.
+    let old = std::fs::metadata(folder.path("scene.txt")).unwrap();
+    std::fs::write(folder.path("scene.txt"), scene("0.1 0.9 0.2")).unwrap();
+    let file = std::fs::File::options().write(true).open(folder.path("scene.txt")).unwrap();
+    file.set_modified(old.modified().unwrap()).unwrap();
+    assert_eq!(file.metadata().unwrap().len(), old.len());
+    shows_what_is_there(&folder, &mut child, "a save with the same size and time");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}

@@ -326,14 +326,17 @@ impl AssetSource for FolderSource {
 pub fn stamp_of(path: &Path) -> Option<Stamp> {
     let metadata = fs::metadata(path).ok()?;
     #[cfg(unix)]
-    let number = std::os::unix::fs::MetadataExt::ino(&metadata);
+    let (number, changed) = {
+        use std::os::unix::fs::MetadataExt as _;
+        (metadata.ino(), i128::from(metadata.ctime()) * 1_000_000_000 + i128::from(metadata.ctime_nsec()))
+    };
     #[cfg(not(unix))]
-    let number = 0;
+    let (number, changed) = (0, 0);
     let modified = match metadata.modified().ok()?.duration_since(UNIX_EPOCH) {
         Ok(after) => after.as_nanos() as i128,
         Err(before) => -(before.duration().as_nanos() as i128),
     };
-    Some(Stamp { path: path.into(), modified, size: metadata.len(), number })
+    Some(Stamp { path: path.into(), modified, changed, size: metadata.len(), number })
 }
 
 /// Reads a file whose size should be `size` bytes; if it has grown, reads at most `most + 1` bytes.

@@ -35,7 +35,6 @@ pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
 fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(REQUEST_TIMEOUT))?;
     stream.set_write_timeout(Some(REQUEST_TIMEOUT))?;
     let head = match head::read(stream) {
         Ok(head) => head,
@@ -44,6 +43,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
         }
         Err(error) => return Err(error),
     };
+    stream.set_read_timeout(Some(REQUEST_TIMEOUT))?;
     if !head.is_local() {
         return send(stream, "403 Forbidden", "text/plain", b"this server answers only pages from localhost\n");
     }

@@ -2,9 +2,14 @@
 
 use std::io::{self, Read};
 use std::net::TcpStream;
+use std::time::{Duration, Instant};
 
 /// Maximum size of the head of a request in bytes.
 const MAX_HEAD: usize = 8 << 10;
+
+/// Time within which the whole head of a request must arrive. A limit for each byte would allow a
+/// slow client to hold a connection forever.
+const HEAD_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Request line and relevant headers of an HTTP request to the server. The body of a request is not
 /// read.
@@ -22,8 +27,10 @@ pub(crate) struct RequestHead {
 
 /// Reads the head of a request from a connection.
 pub(crate) fn read(stream: &mut TcpStream) -> io::Result<RequestHead> {
-    let (mut bytes, mut some) = (Vec::new(), [0_u8; 1024]);
+    let (mut bytes, mut some, start) = (Vec::new(), [0_u8; 1024], Instant::now());
     loop {
+        let left = HEAD_TIMEOUT.checked_sub(start.elapsed()).filter(|left| !left.is_zero());
+        stream.set_read_timeout(Some(left.ok_or(io::ErrorKind::TimedOut)?))?;
         let count = stream.read(&mut some)?;
         if count == 0 {
             return Err(io::ErrorKind::UnexpectedEof.into());

@@ -11,7 +11,7 @@ mod socket;
 
 pub use durer_session::SessionFiles;
 use std::io;
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
@@ -47,7 +47,6 @@ impl Server {
     /// Returns an error if the port is in use, or if the system provides no random numbers.
     pub fn bind(port: u16, start: SessionFiles) -> io::Result<Server> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
-        listener.set_nonblocking(true)?;
         let mut random = [0_u8; 16];
         getrandom::fill(&mut random).map_err(io::Error::other)?;
         let token = random.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -71,8 +70,27 @@ impl Server {
     ///
     /// Returns the errors of the listening socket.
     pub fn run(&self, stop: impl Fn() -> bool) -> io::Result<()> {
-        while !stop() {
-            match self.listener.accept() {
+        let address = self.listener.local_addr()?;
+        std::thread::scope(|scope| {
+            let acceptor = scope.spawn(|| self.accept());
+            while !stop() && !acceptor.is_finished() {
+                std::thread::sleep(POLL_INTERVAL);
+            }
+            self.shared.stop.store(true, Relaxed);
+            // Wake the thread that waits for a connection.
+            let _ = TcpStream::connect(address);
+            acceptor.join().unwrap_or_else(|_| Err(io::Error::other("the server failed")))
+        })
+    }
+
+    /// Accepts connections until the server stops.
+    fn accept(&self) -> io::Result<()> {
+        loop {
+            let accepted = self.listener.accept();
+            if self.shared.stop.load(Relaxed) {
+                return Ok(());
+            }
+            match accepted {
                 Ok((stream, _)) => {
                     let shared = self.shared.clone();
                     let held = ConnectionSlot::new(&shared);
@@ -88,16 +106,11 @@ impl Server {
                             connection::serve(stream, &shared);
                         });
                 }
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                    std::thread::sleep(POLL_INTERVAL.min(Duration::from_millis(5)))
-                }
                 // The client closed the connection before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
                 Err(error) => return Err(error),
             }
         }
-        self.shared.stop.store(true, Relaxed);
-        Ok(())
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::feature::GrayImage;
 use crate::jpeg::is_complete;
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
+use image::{DynamicImage, ImageDecoder as _, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
 /// Maximum length in pixels of the longer side of a photograph. Larger photographs are not read.
@@ -54,13 +54,21 @@ pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     Ok([width, height])
 }
 
-/// Decodes a photograph.
-pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
+/// Decodes a photograph, provided that this needs at most `memory` bytes.
+pub fn read(name: &str, bytes: &[u8], memory: u64) -> Result<Photo, Error> {
     let reader = reader(name, bytes)?;
     if reader.format() == Some(ImageFormat::Jpeg) && !is_complete(bytes) {
         return Err(Error::in_file(name, "cannot be read as a picture: the JPEG is truncated"));
     }
-    let decoded: DynamicImage = reader.decode().map_err(|error| unreadable(name, &error))?;
+    let decoder = reader.into_decoder().map_err(|error| unreadable(name, &error))?;
+    // The decoded picture is converted to three bytes per pixel.
+    let (width, height) = decoder.dimensions();
+    let needed = decoder.total_bytes().saturating_add(3 * u64::from(width) * u64::from(height));
+    if needed > memory {
+        let message = format!("a picture of {width} x {height} needs {needed} bytes of memory, more than the limit");
+        return Err(Error::in_file(name, message));
+    }
+    let decoded = DynamicImage::from_decoder(decoder).map_err(|error| unreadable(name, &error))?;
     let pixels = decoded.into_rgb8();
     if pixels.width().min(pixels.height()) < 16 {
         return Err(Error::in_file(name, "the picture is too small: both sides need at least 16 pixels"));

@@ -150,7 +150,7 @@ fn gltf_keeps_cameras_and_ply_keeps_points() {
 fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     let options = matching::Options { features: 1500, ..Default::default() };
     let described = names.iter().map(|name| {
-        let photo = photo::read(name, &std::fs::read(folder.join(name)).unwrap()).unwrap();
+        let photo = photo::read(name, &std::fs::read(folder.join(name)).unwrap(), u64::MAX).unwrap();
         matching::describe(&photo, &options)
     });
     let matches = matching::match_all(described.collect(), &options, &|_| {}).unwrap();
@@ -174,7 +174,7 @@ fn photographs_become_cameras() {
     let mut bundler = read(&folder.join("results.example/bundle.out")).unwrap();
     let names: Vec<String> = (0..11).map(|i| format!("kermit{i:03}.jpg")).collect();
     for (i, name) in names.iter().enumerate() {
-        let photo = photo::read(name, &std::fs::read(folder.join(name)).unwrap()).unwrap();
+        let photo = photo::read(name, &std::fs::read(folder.join(name)).unwrap(), u64::MAX).unwrap();
         assert_eq!(
             (&*photo.exif.camera, photo.exif.focal.as_ref().unwrap().0.round()),
             ("Canon Canon PowerShot A10", 661.0)

@@ -89,7 +89,8 @@ pub fn load(
     diagnostics: &mut Diagnostics,
 ) -> Result<Option<LoadedScene>, SourceError> {
     let name = path.display().to_string();
-    let bytes = FolderSource::new(folder_of(path)).allow_outside().read_path(path, &name)?;
+    let source = FolderSource::new(folder_of(path)).allow_outside().budget(budget(options));
+    let bytes = source.read_path(path, &name)?;
     Ok(load_text(path, bytes, options, files, diagnostics))
 }
 

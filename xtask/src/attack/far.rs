@@ -1,4 +1,5 @@
-//! Attack `far`: renders closed rooms far from the origin with lights outside. No light must enter
+//! Attack `far`: renders closed rooms far from the origin with lights and a bright background
+//! outside. No light must enter
 //! through the walls.
 
 use super::{Attack, Outcome};
@@ -37,7 +38,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let way = [random(6) - 0.5, random(7) - 0.5, -1.0];
         let text = format!(
             "PerspectiveCamera {{ center {} {} {} direction {} {} {} up 0 1 0 angle 100 }}
-            Background {{ color 0 0 0 ambientLight 0 0 0 }}
+            Background {{ color 1 1 1 ambientLight 0 0 0 }}
             Lights {{ DirectionalLight {{ direction -0.5 -1 -0.4 color 9 9 9 }} PointLight {{ position {} {} {} color 9 9 9 }} }}
             Materials {{ PhongMaterial {{ diffuseColor 1 1 1 }} }}
             Group {{ MaterialIndex 0 Difference {{ {} {} }} }}",

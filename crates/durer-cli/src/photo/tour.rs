@@ -1,7 +1,7 @@
 //! Implements `durer photo tour`, which writes an HTML page for moving through photographs in 3D.
 
 use super::args::TourArgs;
-use super::inputs::{bytes_below, from_photo_error, read};
+use super::inputs::{bytes_below, from_photo_error, memory_limit, read};
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::output::save;
@@ -29,7 +29,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |photograph| {
         let path = args.pictures.join(&photograph.name);
         let content = bytes_below(&args.pictures, Path::new(&photograph.name), &mut registry)?;
-        let photo = photo::read(&path.to_string_lossy(), &content).map_err(from_photo_error)?;
+        let photo = photo::read(&path.to_string_lossy(), &content, memory_limit()).map_err(from_photo_error)?;
         if photo.size() != photograph.size {
             let ([w, h], [x, y]) = (photo.size(), photograph.size);
             return Err(invalid_input(format!(

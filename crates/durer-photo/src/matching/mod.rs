@@ -181,9 +181,9 @@ pub fn match_all(
         });
     }
     let count = photos.len();
-    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).collect();
+    let pair_count = count * (count - 1) / 2;
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let one = |&(i, j): &(usize, usize)| {
+    let one = |i: usize, j: usize| {
         let (a, b) = (&photos[i], &photos[j]);
         let candidates = match_descriptors(&a.descriptors, &b.descriptors, options.ratio);
         let places: Vec<_> = candidates.iter().map(|(m, n)| (place(&a.features[*m]), place(&b.features[*n]))).collect();
@@ -191,7 +191,7 @@ pub fn match_all(
         let seed = options.seed ^ ((i as u64) << 32 | j as u64);
         let geometry = verify_matches(&places, threshold, options.min_matches, seed);
         let now = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        progress(now as f64 / pairs.len() as f64);
+        progress(now as f64 / pair_count as f64);
         let geometry = geometry?;
         let matches: Vec<_> = geometry.inliers.iter().map(|k| candidates[*k]).collect();
         let link = PhotoPair {
@@ -203,7 +203,9 @@ pub fn match_all(
         };
         Some((link, matches))
     };
-    let matched: Vec<_> = pairs.par_iter().map(one).collect::<Vec<_>>().into_iter().flatten().collect();
+    // Most pairs of a large collection have no matches, so no list of all pairs is kept.
+    let of_photo = |i: usize| (i + 1..count).into_par_iter().filter_map(move |j| one(i, j));
+    let matched: Vec<_> = (0..count).into_par_iter().flat_map(of_photo).collect();
     if matched.is_empty() {
         return Err(Error::new("no two photographs show the same objects: too few matches agree on one geometry"));
     }

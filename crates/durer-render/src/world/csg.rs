@@ -492,7 +492,7 @@ impl Csg {
         let speed = line.dir.length();
         let gap = (b.t - a.t) * speed;
         let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].tolerance);
-        let tolerance = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
+        let tolerance = f64::from(s + u) + 0.5 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
         let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
         if gap.is_nan() || gap <= f64::from(r + q).min(tolerance) || gap > GRAZING * tolerance {
             return gap <= tolerance;
@@ -553,13 +553,13 @@ fn order(a: &SurfaceCrossing, b: &SurfaceCrossing) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns twice the sum of the rounding errors of an object's coordinates in world space and in
+/// Returns an upper bound on the sum of the rounding errors of an object's coordinates in world space and in
 /// object space.
 fn tolerance_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
     let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.error_bound(reach(local)));
-    2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
+    0.5 * f32::EPSILON * reach(world).max_element() + f32::EPSILON * moved.max_element()
 }
 
 #[cfg(test)]

@@ -90,9 +90,44 @@ fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Address space in bytes that a thread reserves for its stack and for small allocations, although
+/// it uses little of it.
+const THREAD_SPACE: u64 = 64 << 20;
+
+/// Address space in bytes that any command needs in addition.
+const COMMAND_SPACE: u64 = 128 << 20;
+
+/// Checks that the address space, which `ulimit -v` can limit, suffices for the threads and a small
+/// scene. Failed allocations of a few bytes end a program without a message.
+///
+/// # Errors
+///
+/// Returns a message that states the remaining and the necessary size.
+pub fn check_address_space() -> Result<(), String> {
+    let Some(left) = remaining_address_space().filter(|left| *left < COMMAND_SPACE + threads_space()) else {
+        return Ok(());
+    };
+    let needed = (COMMAND_SPACE + threads_space()) >> 20;
+    let left = left >> 20;
+    Err(format!("only {left} MiB of address space are left (`ulimit -v`), but {needed} MiB are needed"))
+}
+
+/// Returns the address space that the threads of a render reserve.
+fn threads_space() -> u64 {
+    let of_rayon =
+        std::env::var("RAYON_NUM_THREADS").ok().and_then(|count| count.parse().ok()).filter(|&count| count > 0);
+    let of_machine = || std::thread::available_parallelism().map_or(1, |count| count.get() as u64);
+    THREAD_SPACE * of_rayon.unwrap_or_else(of_machine)
+}
+
+/// Returns the remaining address space for a render if it is limited.
+fn address_space() -> Option<u64> {
+    remaining_address_space().map(|left| left.saturating_sub(threads_space()))
+}
+
 /// Returns the remaining address space if it is limited, for example by `ulimit -v`.
 #[cfg(unix)]
-fn address_space() -> Option<u64> {
+fn remaining_address_space() -> Option<u64> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;
     // The first number is the size of the address space in pages.
     let sizes = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
@@ -101,7 +136,7 @@ fn address_space() -> Option<u64> {
 }
 
 #[cfg(not(unix))]
-fn address_space() -> Option<u64> {
+fn remaining_address_space() -> Option<u64> {
     None
 }
 
