@@ -26,7 +26,8 @@ impl Reader<'_, '_> {
             };
             let before = files.limits.object_count();
             let mut parts = Vec::new();
-            let start = Inherited { to_world: DAffine3::IDENTITY, material: here.material.clone() };
+            let start =
+                Inherited { to_world: DAffine3::IDENTITY, material: here.material.clone(), ..Inherited::default() };
             self.visit(&prototype, &start, &mut parts, depth + 1);
             let count = files.limits.object_count() - before;
             prototypes.push((!parts.is_empty()).then_some((parts, count)));

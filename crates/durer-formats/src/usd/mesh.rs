@@ -4,6 +4,7 @@
 
 use super::layer::Value;
 use super::primvar::{Interpolation, Primvar};
+use super::skel::Pose;
 use super::stage::Prim;
 use super::traverse::{Inherited, Reader};
 use crate::polygon::Triangulator;
@@ -52,14 +53,16 @@ impl Reader<'_, '_> {
         let Some(count) = prim.get(self.stage, "faceVertexCounts").map(|counts| counts.value.numbers().len()) else {
             return;
         };
+        let pose = Pose::of(self.stage, prim, here);
+        let pose_key = pose.as_ref().map_or("", |pose| &pose.key);
         for part in self.parts(prim, here, count) {
             let bound = part.material.as_deref().and_then(|path| self.material(path));
             let uvs = bound.as_ref().map_or(Vec::new(), |bound| bound.uvs.clone());
-            let key = format!("{}#{}@{}", prim.key(), part.name, uvs.join(","));
+            let key = format!("{}#{}@{}{pose_key}", prim.key(), part.name, uvs.join(","));
             let data = match self.meshes.get(&key) {
                 Some(known) => known.clone(),
                 None => {
-                    let data = self.mesh_data(prim, &uvs, part.faces.as_deref()).map(Arc::new);
+                    let data = self.mesh_data(prim, &uvs, part.faces.as_deref(), pose.as_ref()).map(Arc::new);
                     self.meshes.insert(key.clone(), data.clone());
                     data
                 }
@@ -104,17 +107,20 @@ impl Reader<'_, '_> {
 
     /// Converts the chosen faces of a mesh to triangles. `uvs` are the names of the texture
     /// coordinates that the material uses.
-    fn mesh_data(&self, prim: &Prim, uvs: &[String], chosen: Option<&[bool]>) -> Option<MeshData> {
+    fn mesh_data(&self, prim: &Prim, uvs: &[String], chosen: Option<&[bool]>, pose: Option<&Pose>) -> Option<MeshData> {
         let (files, at) = (self.stage.files, prim.span());
         let warn =
             |message: &str| files.report.warn_once("bad-mesh", at, format!("the mesh `{}` {message}", prim.name()));
-        let faces = match self.faces(prim) {
+        let mut faces = match self.faces(prim) {
             Ok(faces) => faces,
             Err(message) => {
                 warn(&format!("is left out: {message}"));
                 return None;
             }
         };
+        if let Some(pose) = pose {
+            pose.move_points(&mut faces.points);
+        }
         // Counts the points, and for each corner a triangle with its normals and coordinates.
         let bytes = 48 * faces.points.len() + 96 * faces.corners.len();
         files.limits.count_bytes_or_report(bytes, 1, files.report, at).then_some(())?;
@@ -193,6 +199,19 @@ impl Reader<'_, '_> {
                     .filter(|all| all.contains(&NO_INDEX))
                     .for_each(|all| *all = [NO_INDEX; 3]);
             }
+        }
+        if let (Some(pose), Some(values)) = (pose, &normals) {
+            // A normal belongs to the point of a corner that uses it.
+            let mut turned = data.normals.clone();
+            for (corners, indices) in data.triangles.iter().zip(&data.triangle_normals) {
+                for (vertex, index) in corners.iter().zip(indices).filter(|(_, index)| **index != NO_INDEX) {
+                    let point = if is_split { faces.corners[*vertex as usize] } else { *vertex };
+                    let normal =
+                        Vec3::from_slice(&values.value(*index as usize).iter().map(|x| *x as f32).collect::<Vec<_>>());
+                    turned[*index as usize] = pose.turned(point as usize, normal);
+                }
+            }
+            data.normals = turned;
         }
         let of_vertex = |values: &Primvar, vertex: usize| match is_split {
             true => values.index(faces.face_of(vertex), faces.corners[vertex] as usize, vertex),

@@ -19,6 +19,7 @@ mod mesh;
 mod primvar;
 mod shader;
 mod shape;
+mod skel;
 mod stage;
 #[cfg(test)]
 mod tests;

@@ -309,6 +309,40 @@ fn seeds_of_the_official_library_agree() {
 }
 
 #[test]
+fn meshes_follow_their_joints() {
+    let scene = sound(
+        "def SkelRoot \"Root\" {
+            rel skel:skeleton = </Root/Bones>
+            def Skeleton \"Bones\" {
+                uniform token[] joints = [\"a\", \"a/b\"]
+                uniform matrix4d[] bindTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1)), ((1,0,0,0),(0,1,0,0),(0,0,1,0),(1,0,0,1))]
+                uniform matrix4d[] restTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1)), ((1,0,0,0),(0,1,0,0),(0,0,1,0),(1,0,0,1))]
+                rel skel:animationSource = </Root/Turn>
+            }
+            def SkelAnimation \"Turn\" {
+                uniform token[] joints = [\"a/b\"]
+                float3[] translations = [(1, 0, 0)]
+                quatf[] rotations = [(0.70710678, 0, 0, 0.70710678)]
+                half3[] scales = [(1, 1, 1)]
+            }
+            def Mesh \"M\" {
+                uniform token subdivisionScheme = \"none\"
+                point3f[] points = [(0,0,0), (2,0,0), (0,0,2)]
+                int[] faceVertexCounts = [3]
+                int[] faceVertexIndices = [0, 1, 2]
+                int[] primvars:skel:jointIndices = [0, 1, 0, 1, 0, 1] ( elementSize = 2 interpolation = \"vertex\" )
+                float[] primvars:skel:jointWeights = [1, 0, 0, 1, 0.5, 0.5] ( elementSize = 2 interpolation = \"vertex\" )
+            }
+        }",
+    );
+    let mesh = scene.assets.meshes.values().next().unwrap();
+    // The turn about (1, 0, 0) moves (2, 0, 0) to (1, 1, 0), and (0, 0, 2) half of the way to (1, -1, 2).
+    let expected = [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.5, -0.5, 2.0)];
+    let close = |(a, b): (&Vec3, &Vec3)| (*a - *b).length() < 1e-6;
+    assert!(mesh.positions.iter().zip(&expected).all(close), "{:?}", mesh.positions);
+}
+
+#[test]
 fn up_axis_and_time_are_heeded() {
     let text = "( upAxis = \"Z\" startTimeCode = 1 timeCodesPerSecond = 24 )
         def Sphere \"A\" {

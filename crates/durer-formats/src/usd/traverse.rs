@@ -3,6 +3,7 @@
 use super::camera::CameraData;
 use super::light::Emission;
 use super::material::BoundMaterial;
+use super::skel::binding;
 use super::stage::{Prim, Stage};
 use super::transform::local_transform;
 use durer_diag::Span;
@@ -23,6 +24,8 @@ pub(super) struct Inherited {
     pub to_world: DAffine3,
     /// Path of the bound material.
     pub material: Option<String>,
+    /// Paths of the skeleton and of its animation.
+    pub skeleton: [Option<String>; 2],
 }
 
 /// Converts the prims of a stage to a scene.
@@ -68,6 +71,7 @@ impl<'s, 'a> Reader<'s, 'a> {
         if let Some(material) = self.bound_material(prim) {
             here.material = Some(material);
         }
+        here.skeleton = binding(prim, inherited);
         let type_name = prim.type_name().to_string();
         // Materials and skeletons have no visible descendants.
         if matches!(
@@ -114,8 +118,8 @@ impl<'s, 'a> Reader<'s, 'a> {
         if prim.has_api("MeshLightAPI") {
             report.unsupported_once(prim.span(), "the light of a mesh with MeshLightAPI is left out");
         }
-        if prim.has_api("SkelBindingAPI") && type_name == "Mesh" {
-            report.unsupported_once(prim.span(), "skeletons have no counterpart: meshes keep their pose at rest");
+        if !prim.targets("skel:blendShapeTargets").is_empty() {
+            report.unsupported_once(prim.span(), "blend shapes have no counterpart: they are left out");
         }
     }
 
