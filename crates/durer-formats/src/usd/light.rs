@@ -53,6 +53,7 @@ impl Reader<'_, '_> {
     pub fn light(&mut self, prim: &Prim, kind: &str, to_world: DAffine3, objects: &mut Vec<Object>) {
         let (report, at) = (self.stage.files.report, prim.span());
         let Some((radiance, spectrum)) = self.radiance(prim, kind) else { return };
+        self.scene.is_lit = true;
         if kind.starts_with("DomeLight") {
             return self.dome(prim, radiance, to_world);
         }

@@ -98,7 +98,7 @@ fn scene(input: &ReadInput, report: &SharedReport, limits: &ResourceLimits) -> O
     stage.check_variant();
     reader.set_camera();
     let (mut scene, has_dome) = (reader.scene, reader.has_dome);
-    if !has_dome && (scene.lights.is_some() || scene.emits_light()) {
+    if !has_dome && scene.is_lit {
         scene.background = Background { color: Vec3::ZERO, ..scene.background };
     }
     if objects.is_empty() && !report.has_errors() {
