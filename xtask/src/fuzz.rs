@@ -27,6 +27,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("pbrt", &["pbrt"]),
     ("rad", &["rad"]),
     ("threemf", &["3mf"]),
+    ("usd", &["usda", "usdc", "usdz"]),
     ("xml", &["xml"]),
     ("curve", &["csv"]),
     ("ies", &["ies", "ldt"]),

@@ -27,8 +27,8 @@ use std::path::Path;
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-SCENE is a file in the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without
-a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words of the language.
+SCENE is a file in the course's language or a model: glTF, GLB, USD, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model
+without a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words of the language.
 
 The extension of PICTURE selects the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures are written as layers of
 one EXR file, or as separate files: picture.depth.png and so on.

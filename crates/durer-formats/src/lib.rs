@@ -29,6 +29,7 @@ mod mitsuba;
 mod model;
 mod number;
 pub mod obj;
+mod off;
 mod panorama;
 #[cfg(feature = "pbrt")]
 mod pbrt;
@@ -48,10 +49,12 @@ mod sticks;
 mod stl;
 #[cfg(feature = "threemf")]
 mod threemf;
+#[cfg(feature = "usd")]
+mod usd;
 pub mod vol;
 #[cfg(any(feature = "mitsuba", feature = "threemf"))]
 mod xml;
-#[cfg(feature = "threemf")]
+#[cfg(any(feature = "threemf", feature = "usd"))]
 mod zip;
 
 pub use decoder::Decoder;
@@ -85,7 +88,7 @@ pub struct MeshFormat {
 }
 
 /// Mesh formats, in the order in which they are tried for a file with an unknown extension.
-pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
+pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT, off::FORMAT];
 
 /// Returns the bytes unchanged, for formats that no legacy program reads.
 fn without_quirks(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {

@@ -33,6 +33,11 @@ impl Pictures<'_> {
         self.decoded(name, at, image::decode_srgb)
     }
 
+    /// Decodes a picture in memory, and decodes 8-bit values as sRGB.
+    pub fn of_bytes(&self, name: &str, bytes: &[u8], at: Span) -> Option<Image> {
+        self.read(name, bytes, image::decode_srgb).map_err(|error| self.report_error(name, at, &error)).ok()
+    }
+
     /// Reads a file as a picture. `decode` is the transfer function of the 8-bit values.
     pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;

@@ -5,7 +5,7 @@ use super::model::SceneFormat;
 pub use super::model::{ReadInput, WriteContext, WriteScene};
 use super::pictures::picture_error;
 use super::signature::wrong_format_error;
-use super::{MeshFormat, extension, obj, panorama, ply, read_mesh, sticks, stl};
+use super::{MeshFormat, extension, obj, off, panorama, ply, read_mesh, sticks, stl};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
@@ -28,6 +28,9 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     super::pbrt::FORMAT,
     #[cfg(feature = "mitsuba")]
     super::mitsuba::FORMAT,
+    // A USD package is also a ZIP archive, so its extension decides.
+    #[cfg(feature = "usd")]
+    super::usd::FORMAT,
     #[cfg(feature = "threemf")]
     super::threemf::FORMAT,
     #[cfg(feature = "radiance")]
@@ -35,6 +38,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     single_mesh_format(&ply::FORMAT),
     obj::scene::FORMAT,
     single_mesh_format(&stl::FORMAT),
+    single_mesh_format(&off::FORMAT),
 ];
 
 /// Returns the scene format for files that contain a single mesh.
@@ -77,19 +81,19 @@ pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFo
 /// Reads a model as a scene, and adds a camera, lights and a material if they are missing.
 pub fn read_model(format: &SceneFormat, input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
-    scene.up = Some(input.scene_defaults.up.unwrap_or(format.up));
+    let up = input.scene_defaults.up.or(scene.up).unwrap_or(format.up);
+    scene.up = Some(up);
     if let Some(path) = &input.scene_defaults.view_file {
         let (name, bytes) = read_option_file(input, path, diagnostics)?;
         set_view(&mut scene, input, &name, &bytes, diagnostics)?;
     }
     if let Some(path) = &input.scene_defaults.environment {
         let (name, bytes) = read_option_file(input, path, diagnostics)?;
-        let up = input.scene_defaults.up.unwrap_or(format.up);
         let surrounded = set_environment(&mut scene, &name, bytes, up, input.memory);
         surrounded.map_err(|error| diagnostics.push(picture_error(&name, &error))).ok()?;
     }
     if !input.scene_defaults.convert_only {
-        input.scene_defaults.complete(&mut scene, format.up, format.is_complete_scene);
+        input.scene_defaults.complete(&mut scene, up, format.is_complete_scene);
     }
     Some(scene)
 }

@@ -16,11 +16,11 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"GIF8", "a picture (GIF)", None),
     (b"%PDF", "a PDF", None),
     (b"BLENDER", "a Blender file", None),
-    (b"OFF\n", "OFF", None),
-    (b"OFF\r", "OFF", None),
-    (b"COFF", "OFF", None),
-    (b"NOFF", "OFF", None),
-    (b"STOFF", "OFF", None),
+    (b"OFF\n", "OFF", Some("off")),
+    (b"OFF\r", "OFF", Some("off")),
+    (b"COFF", "OFF", Some("off")),
+    (b"NOFF", "OFF", Some("off")),
+    (b"STOFF", "OFF", Some("off")),
     (b"IESNA", LUMINAIRE, None),
     (b"P3\n", "a picture (PPM)", None),
     (b"P6\n", "a picture (PPM)", None),
@@ -36,8 +36,8 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"<html", "a web page", None),
     (b"\x7fELF", "a program", None),
     (b"Kaydara FBX Binary", "FBX", None),
-    (b"PXR-USDC", "USD", None),
-    (b"#usda", "USD", None),
+    (b"PXR-USDC", "binary USD", Some("usdc")),
+    (b"#usda", "USD", Some("usda")),
 ];
 
 /// Kind of a photometric file, which describes a light rather than a scene.
@@ -54,7 +54,9 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         return Some(Diagnostic::error(message).code("syntax").help("save the file as UTF-8 in the text editor"));
     }
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
-    if own.is_some_and(|own| extensions.contains(&own)) {
+    // Packages of USD are ZIP archives too.
+    let own_package = *own == Some("3mf") && extensions.contains(&"usdz");
+    if own_package || own.is_some_and(|own| extensions.contains(&own)) {
         return None;
     }
     let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
@@ -104,7 +106,9 @@ mod tests {
         );
         assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
-        assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert the file to glTF"));
+        assert!(messages(b"Kaydara FBX Binary", "b.obj", &["obj"]).unwrap().contains("convert the file to glTF"));
+        assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("rename the file to `b.usdc`"));
+        assert_eq!(messages(b"PK\x03\x04", "b.usdz", &["usda", "usdc", "usdz", "usd"]), None);
         assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
         assert!(messages(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("use the file in a scene"));
         assert!(messages(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));

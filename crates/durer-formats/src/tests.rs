@@ -82,7 +82,7 @@ fn format_follows_from_name_or_content() {
         assert_eq!(read_clean(ply, name), expected);
     }
     assert!(read(obj, "mesh.ply").1[0].contains("expected `ply`"));
-    let known = "known formats are PLY (.ply), Wavefront OBJ (.obj), STL (.stl)";
+    let known = "known formats are PLY (.ply), Wavefront OBJ (.obj), STL (.stl), OFF (.off)";
     assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is not a mesh file of a known format ({known})")]);
     assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known formats are"));
     assert!(too_large(u32::MAX as u64, "big.obj").unwrap().message.contains("4294967295 bytes"));

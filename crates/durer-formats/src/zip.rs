@@ -19,6 +19,8 @@ pub(super) struct Zip<'a> {
     bytes: &'a [u8],
     /// Location, compression method, and uncompressed size of each part, by the name of the part.
     parts: BTreeMap<String, (ZipArchiveEntryWayfinder, CompressionMethod, u64)>,
+    /// Names of the parts in the order of the archive.
+    order: Vec<String>,
     /// Number of bytes that may still be decompressed.
     left: u64,
 }
@@ -32,7 +34,7 @@ impl<'a> Zip<'a> {
     /// Reads the list of parts in an archive.
     pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
         let archive = ZipArchive::from_slice(bytes).map_err(|error| error.to_string())?;
-        let mut parts = BTreeMap::new();
+        let (mut parts, mut order) = (BTreeMap::new(), Vec::new());
         let mut entries = archive.entries();
         while let Some(entry) = entries.next_entry().map_err(|error| error.to_string())? {
             let Ok(name) = std::str::from_utf8(entry.file_path().as_bytes()).map(str::to_string) else { continue };
@@ -43,13 +45,19 @@ impl<'a> Zip<'a> {
             if parts.insert(name.clone(), part).is_some() {
                 return Err(format!("two parts have the name `{name}`"));
             }
+            order.push(name);
         }
-        Ok(Zip { bytes, parts, left: FREE_BYTES + MAX_RATIO * bytes.len() as u64 })
+        Ok(Zip { bytes, parts, order, left: FREE_BYTES + MAX_RATIO * bytes.len() as u64 })
     }
 
     /// Returns the names of all parts in the archive.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.parts.keys().map(String::as_str)
+    }
+
+    /// Returns the name of the first part of the archive that meets a condition.
+    pub fn first_name(&self, condition: impl Fn(&str) -> bool) -> Option<&str> {
+        self.order.iter().map(String::as_str).find(|name| condition(name))
     }
 
     /// Decompresses a part; returns `None` if the archive has no such part.

@@ -11,6 +11,7 @@ pub mod denoise;
 mod display;
 mod error;
 mod formats;
+mod half;
 mod limits;
 pub mod panics;
 mod read;
@@ -30,6 +31,7 @@ pub use error::ImageError;
 pub use formats::{
     Depth, FORMATS, Format, Raster, RowFormat, RowLayout, RowWriter, WriteOptions, extension_of, format_for,
 };
+pub use half::f32_from_half;
 pub use limits::{can_allocate, checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
 #[cfg(feature = "fs")]

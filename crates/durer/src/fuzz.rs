@@ -138,6 +138,11 @@ pub fn model(data: &[u8], name: &str) {
     }
 }
 
+/// Returns a file name for bytes that may be a USD layer or a package of layers.
+pub fn usd_name(data: &[u8]) -> &'static str {
+    if data.starts_with(b"PK") { "x.usdz" } else { "x.usd" }
+}
+
 /// Reads a picture file and checks that the size and the memory stated by its header are correct.
 pub fn picture(data: &[u8], name: &str) {
     let Ok(encoded) = Encoded::open(data, name) else { return };
@@ -264,6 +269,7 @@ fn seeds_hold() {
                 "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
                 "gltf" | "pbrt" | "rad" | "xml" => model(&data, &format!("x.{name}")),
                 "threemf" => model(&data, "x.3mf"),
+                "usd" => model(&data, usd_name(&data)),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }

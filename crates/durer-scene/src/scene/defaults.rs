@@ -124,7 +124,8 @@ impl SceneDefaults {
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = ModelAxes::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.orbit_degrees.is_some();
-        let lit = (dark && (scene.camera.is_some() || scene.emits_light()))
+        let lit = scene.is_lit
+            || (dark && (scene.camera.is_some() || scene.emits_light()))
             || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));

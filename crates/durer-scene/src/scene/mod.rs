@@ -218,6 +218,10 @@ pub struct Scene {
     /// Up axis, if the format defines one.
     #[serde(skip)]
     pub up: Option<Axis>,
+    /// True if the file describes its own light by surfaces or surroundings, so that no default
+    /// lights are added.
+    #[serde(skip)]
+    pub is_lit: bool,
     /// Lumens per watt for red, green and blue, if the light in the scene is given in watts.
     #[serde(skip)]
     pub lumens_per_watt: Option<Vec3>,

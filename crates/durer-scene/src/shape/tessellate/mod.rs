@@ -2,6 +2,7 @@
 //! [`Shape::to_mesh`](super::Shape::to_mesh). The submodules tessellate surfaces that are not
 //! primitives.
 
+pub mod catmull_clark;
 pub mod net;
 pub mod revolution;
 pub mod subdivision;

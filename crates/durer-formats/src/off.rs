@@ -1,0 +1,283 @@
+//! Reader and writer of Object File Format (`.off`) meshes in text, with polygons and colours.
+//!
+//! Source: *Geomview Manual*, "OFF Files", The Geometry Center. The first word consists of optional
+//! prefixes (`ST` texture coordinates, `C` colours, `N` normals) and `OFF`.
+
+use super::number::{NumberError, parse_f32};
+use super::polygon::Triangulator;
+use super::report::{Report, quoted};
+use super::{MeshFormat, without_quirks};
+use durer_diag::Diagnostics;
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::scene::Axis;
+use durer_scene::shape::mesh::MeshData;
+use std::ops::Range;
+
+/// Entry for OFF in the list of mesh formats.
+pub(super) const FORMAT: MeshFormat =
+    MeshFormat { name: "OFF", extensions: &["off"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Y };
+
+/// First words of files that are read.
+const HEADERS: [&[u8]; 8] = [b"OFF", b"COFF", b"NOFF", b"CNOFF", b"STOFF", b"STCOFF", b"STNOFF", b"STCNOFF"];
+
+/// Returns true if the first word of a file is one of [`HEADERS`].
+fn recognise(bytes: &[u8]) -> bool {
+    let first = bytes.split(|byte| byte.is_ascii_whitespace()).next().unwrap_or_default();
+    HEADERS.contains(&first)
+}
+
+/// Words of the text with their positions. Comments begin with `#`.
+struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    /// Returns the position of the next word, or `None` at the end of the file. If `same_line` is
+    /// set, also returns `None` at the end of the line.
+    fn next(&mut self, same_line: bool) -> Option<Range<usize>> {
+        loop {
+            match *self.bytes.get(self.at)? {
+                b'\n' | b'#' if same_line => return None,
+                b'#' => self.at += self.bytes[self.at..].iter().take_while(|byte| **byte != b'\n').count(),
+                byte if byte.is_ascii_whitespace() => self.at += 1,
+                _ => break,
+            }
+        }
+        let length =
+            self.bytes[self.at..].iter().take_while(|byte| !byte.is_ascii_whitespace() && **byte != b'#').count();
+        let word = self.at..self.at + length;
+        self.at = word.end;
+        Some(word)
+    }
+
+    /// Reads a number, and reports an error if there is none.
+    fn number(&mut self, report: &mut Report, what: &str) -> Option<f32> {
+        let Some(at) = self.next(false) else {
+            let end = self.bytes.len();
+            report.error(end..end, format!("the file ends before {what}"));
+            return None;
+        };
+        match parse_f32(&self.bytes[at.clone()]) {
+            Ok(number) => Some(number),
+            Err(error) => {
+                let word = quoted(&self.bytes[at.clone()]);
+                let message = match error {
+                    NumberError::NotFinite => format!("{what} must be a finite number, found {word}"),
+                    _ => format!("{what} must be a number, found {word}"),
+                };
+                report.error(at, message);
+                None
+            }
+        }
+    }
+
+    /// Reads a whole number of 0 or more.
+    fn count(&mut self, report: &mut Report, what: &str) -> Option<(usize, Range<usize>)> {
+        let Some(at) = self.next(false) else {
+            let end = self.bytes.len();
+            report.error(end..end, format!("the file ends before {what}"));
+            return None;
+        };
+        let number = std::str::from_utf8(&self.bytes[at.clone()]).ok().and_then(|word| word.parse().ok());
+        if number.is_none() {
+            report
+                .error(at.clone(), format!("{what} must be a whole number, found {}", quoted(&self.bytes[at.clone()])));
+        }
+        Some((number?, at))
+    }
+
+    /// Reads the numbers up to the end of the line.
+    fn rest_of_line(&mut self) -> Vec<f32> {
+        let mut numbers = Vec::new();
+        while let Some(at) = self.next(true) {
+            match parse_f32(&self.bytes[at]) {
+                Ok(number) if numbers.len() < 4 => numbers.push(number),
+                _ => break,
+            }
+        }
+        numbers
+    }
+}
+
+/// Reads an OFF file; see [`read_mesh`](super::read_mesh).
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let data = parse(bytes, &mut report);
+    let data = data.unwrap_or_default();
+    if data.triangles.is_empty() && !report.has_errors() {
+        report.warning(0..0, "the mesh has no triangles");
+    }
+    report.finish(diagnostics, data)
+}
+
+fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
+    let mut words = Words { bytes, at: 0 };
+    let mut header: &[u8] = b"OFF";
+    let first = words.next(false).unwrap_or(0..0);
+    match HEADERS.iter().find(|known| **known == &bytes[first.clone()]) {
+        Some(known) => header = known,
+        // Some files begin with the counts.
+        None if bytes.get(first.start).is_some_and(u8::is_ascii_digit) => words.at = first.start,
+        None => {
+            report.error(first.clone(), format!("expected `OFF`, found {}", quoted(&bytes[first])));
+            return None;
+        }
+    }
+    let second = words.at;
+    if words.next(false).is_some_and(|at| bytes[at.clone()].eq_ignore_ascii_case(b"BINARY")) {
+        report.error(second..words.at, "binary OFF files are not supported").help =
+            Some("save the file as text".into());
+        return None;
+    }
+    words.at = second;
+    let has = |letter: u8| header.contains(&letter) && header != b"OFF";
+    let (has_uvs, has_colors, has_normals) =
+        (has(b'S'), header.starts_with(b"C") || header.starts_with(b"STC"), has(b'N'));
+    let (vertices, at) = words.count(report, "the number of vertices")?;
+    let (faces, face_at) = words.count(report, "the number of faces")?;
+    words.count(report, "the number of edges")?;
+    // Each vertex takes at least six bytes of the file, and each face two.
+    if vertices > bytes.len() / 6 + 1 {
+        report.error(at, format!("the file is too short for {vertices} vertices"));
+        return None;
+    }
+    if faces > bytes.len() / 2 + 1 {
+        report.error(face_at, format!("the file is too short for {faces} faces"));
+        return None;
+    }
+    let mut data = MeshData::default();
+    for _ in 0..vertices {
+        let mut triple = |what: &str| -> Option<Vec3> {
+            Some(Vec3::new(words.number(report, what)?, words.number(report, what)?, words.number(report, what)?))
+        };
+        data.positions.push(triple("a coordinate of a vertex")?);
+        if has_normals {
+            data.normals.push(triple("a component of a normal")?);
+        }
+        let rest = words.rest_of_line();
+        let (color, uv) =
+            rest.split_at(if has_colors { rest.len().saturating_sub(if has_uvs { 2 } else { 0 }) } else { 0 });
+        // Some files have colours although the header does not announce them.
+        let color = if color.is_empty() && !has_uvs { uv } else { color };
+        if let Some(color) = color_of(color) {
+            data.colors.resize(data.positions.len() - 1, [1.0; 4]);
+            data.colors.push(color);
+        }
+        if let (true, [.., u, v]) = (has_uvs, uv) {
+            data.uvs.resize(data.positions.len() - 1, Vec2::ZERO);
+            data.uvs.push(Vec2::new(*u, *v));
+        }
+    }
+    let pad = data.positions.len();
+    if !data.colors.is_empty() {
+        data.colors.resize(pad, [1.0; 4]);
+    }
+    if !data.uvs.is_empty() {
+        data.uvs.resize(pad, Vec2::ZERO);
+    }
+    let mut triangulator = Triangulator::new(bytes.len());
+    let mut corners = Vec::new();
+    for _ in 0..faces {
+        let (count, at) = words.count(report, "the number of corners of a face")?;
+        corners.clear();
+        if count > bytes.len() {
+            report.error(at, format!("the file is too short for a face of {count} corners"));
+            return None;
+        }
+        for _ in 0..count {
+            let (index, at) = words.count(report, "an index of a vertex")?;
+            if index >= pad {
+                report.error(at, format!("index {index} is out of range, because there are {pad} vertices"));
+                return None;
+            }
+            corners.push(index as u32);
+        }
+        // The colour of a face has no counterpart.
+        words.rest_of_line();
+        let (positions, triangles) = (&data.positions, &mut data.triangles);
+        let corner = |i: usize| positions[corners[i] as usize];
+        if triangulator.triangulate(corners.len(), corner, |t| triangles.push(t.map(|i| corners[i]))).is_err() {
+            report.error(at, "the polygons are too large and too irregular to be split into triangles");
+            return None;
+        }
+    }
+    if has_normals {
+        data.triangle_normals.clone_from(&data.triangles);
+    }
+    if !data.uvs.is_empty() {
+        data.triangle_uvs.clone_from(&data.triangles);
+    }
+    Some(data)
+}
+
+/// Returns a colour of three or four numbers, which are from 0 to 1, or from 0 to 255.
+fn color_of(numbers: &[f32]) -> Option<[f32; 4]> {
+    let scale = if numbers.iter().any(|number| *number > 1.0) { 255.0 } else { 1.0 };
+    match numbers {
+        [r, g, b] => Some([r / scale, g / scale, b / scale, 1.0]),
+        [r, g, b, a] => Some([r, g, b, a].map(|number| number / scale)),
+        _ => None,
+    }
+}
+
+/// Writes a mesh as text, with the positions and triangles.
+fn write(mesh: &MeshData) -> Vec<u8> {
+    let mut text = format!("OFF\n{} {} 0\n", mesh.positions.len(), mesh.triangles.len());
+    for p in &mesh.positions {
+        text += &format!("{} {} {}\n", p.x, p.y, p.z);
+    }
+    for [a, b, c] in &mesh.triangles {
+        text += &format!("3 {a} {b} {c}\n");
+    }
+    text.into_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str) -> (Option<MeshData>, Vec<String>) {
+        let mut diagnostics = Diagnostics::default();
+        let mesh = read(text.as_bytes(), 0, &mut diagnostics);
+        let place = |found: &durer_diag::Diagnostic| found.span.map_or(0, |span| span.start);
+        (mesh, diagnostics.iter().map(|found| format!("{} {}", place(found), found.message)).collect())
+    }
+
+    #[test]
+    fn polygons_colours_and_comments_are_read() {
+        let (mesh, messages) = read_text(
+            "COFF # a square\n4 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n# b\n1 1 0 0 0 255 255\n0 1 0 9 9 9 255\n4 0 1 2 3 0.5 0.5 0.5\n",
+        );
+        let mesh = mesh.unwrap();
+        assert!(messages.is_empty(), "{messages:?}");
+        assert_eq!((mesh.positions.len(), &mesh.triangles[..]), (4, &[[0, 1, 2], [0, 2, 3]][..]));
+        assert_eq!(mesh.colors[1], [0.0, 1.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn normals_and_coordinates_follow_the_header() {
+        let text = "STNOFF\n3 1 3\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
+        let mesh = read_text(text).0.unwrap();
+        assert_eq!((mesh.normals.len(), mesh.uvs[1], mesh.triangle_normals[0]), (3, Vec2::X, [0, 1, 2]));
+    }
+
+    #[test]
+    fn written_meshes_are_read_back() {
+        let text = "OFF\n3 1 0\n0.1 0 -1e-20\n1 0 0\n0 1 3e20\n3 0 1 2\n";
+        let mesh = read_text(text).0.unwrap();
+        let again = read_text(std::str::from_utf8(&write(&mesh)).unwrap()).0.unwrap();
+        assert_eq!(again, mesh);
+    }
+
+    #[test]
+    fn errors_have_positions() {
+        let message = |text: &str| read_text(text).1.join("; ");
+        assert_eq!(message("OFF\n1 1 0\n0 0 x\n"), "14 a coordinate of a vertex must be a number, found `x`");
+        assert_eq!(message("OFF\n1 1 0\n0 0 0\n3 0 0 7\n"), "22 index 7 is out of range, because there are 1 vertices");
+        assert_eq!(message("OFF\n9999999 1 0\n0 0 0\n"), "4 the file is too short for 9999999 vertices");
+        assert!(message("OFF BINARY\n").contains("save") || message("OFF BINARY\n").contains("binary OFF"));
+        assert!(message("OFF\n3 1 0\n0 0 0\n").ends_with("the file ends before a coordinate of a vertex"));
+        assert!(message("junk").contains("expected `OFF`, found `junk`"));
+    }
+}
