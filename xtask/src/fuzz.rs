@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Fuzz targets, with the extensions of their seed files.
-const TARGETS: [(&str, &[&str]); 22] = [
+const TARGETS: [(&str, &[&str]); 24] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -27,6 +27,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("pbrt", &["pbrt"]),
     ("rad", &["rad"]),
     ("threemf", &["3mf"]),
+    ("off", &["off"]),
     ("usd", &["usda", "usdc", "usdz"]),
     ("xml", &["xml"]),
     ("curve", &["csv"]),

@@ -119,7 +119,10 @@ fn files() -> Result<Vec<PathBuf>> {
                 (entry.path(), entry.metadata()?)
             };
             let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            let known = ["txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "rif", "3mf", "usda", "usdc", "usdz", "obj", "ply", "stl"];
+            let known = [
+                "txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "rif", "3mf", "usda", "usdc", "usdz", "obj", "ply",
+                "stl",
+            ];
             match metadata.is_dir() {
                 true => folders.push(path),
                 false if metadata.len() <= MAX_BYTES && known.contains(&&*ending) => found.push(path),

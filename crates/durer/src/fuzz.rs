@@ -266,7 +266,7 @@ fn seeds_hold() {
                 "ies" => profile(&data),
                 "part" => part(&data),
                 "ways" => ways(&data),
-                "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
+                "obj" | "off" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
                 "gltf" | "pbrt" | "rad" | "xml" => model(&data, &format!("x.{name}")),
                 "threemf" => model(&data, "x.3mf"),
                 "usd" => model(&data, usd_name(&data)),

@@ -239,6 +239,7 @@ impl SceneGenerator {
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
             assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
             up: None,
+            is_lit: false,
             lumens_per_watt: None,
             camera_span: Default::default(),
             background_span: Default::default(),

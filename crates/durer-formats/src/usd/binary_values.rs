@@ -82,7 +82,7 @@ impl<'a> Cursor<'a> {
         let count = usize::try_from(self.u64()?).unwrap_or(usize::MAX);
         let left = self.bytes.len().saturating_sub(self.at);
         // Compressed elements take at least two bits before LZ4, which shrinks data to 1/255.
-        let most = if size > 0 { left / size } else { left.saturating_mul(4 * 255) };
+        let most = left.checked_div(size).unwrap_or(left.saturating_mul(4 * 255));
         if count <= most { Ok(count) } else { Err("it announces more elements than the file can hold".into()) }
     }
 
@@ -250,10 +250,10 @@ impl<'a> Tables<'a> {
         }
         let (before, after, _) = time.between(times);
         let mut samples = Vec::new();
-        for index in before..=after.min(before + 1) {
+        for (index, time) in times.iter().enumerate().take(after + 1).skip(before) {
             let mut at = Cursor::new(self.bytes, at.at + 8 * index);
             if let Decoded::Value(value) = self.decode(at.u64()?)? {
-                samples.push((times[index], value));
+                samples.push((*time, value));
             }
         }
         Ok(samples)

@@ -61,7 +61,7 @@ impl<'a> LayerFiles<'a> {
         let package = package.ok()?;
         // The first layer of a package is its root layer. A package lists its files in order, but
         // the list here is sorted, so prefer the file whose offset is lowest.
-        let Some(root) = package.first_name(|name| is_layer(name)).map(str::to_string) else {
+        let Some(root) = package.first_name(is_layer).map(str::to_string) else {
             report.error(at, "the package contains no USD layer");
             return None;
         };

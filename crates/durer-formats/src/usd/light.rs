@@ -61,13 +61,13 @@ impl Reader<'_, '_> {
             return self.distant_light(prim, radiance, spectrum, to_world);
         }
         let input = |name: &str, default: f64| self.input(prim, name).unwrap_or(default);
-        let scale = to_world.matrix3.determinant().abs().cbrt();
+        let scale = f64::from(fp::pow(to_world.matrix3.determinant().abs() as f32, 1.0 / 3.0));
         let radius = input("radius", 0.5).max(0.0);
         let (width, height) = (input("width", 1.0), input("height", 1.0));
         let length = input("length", 1.0);
         let axes = to_world.matrix3;
         let area = match kind {
-            "SphereLight" => 4.0 * PI * (radius * scale).powi(2),
+            "SphereLight" => 4.0 * PI * (radius * scale) * (radius * scale),
             "RectLight" => width * height * axes.x_axis.cross(axes.y_axis).length(),
             "DiskLight" => PI * radius * radius * axes.x_axis.cross(axes.y_axis).length(),
             _ => 2.0 * PI * radius * length * scale * scale,
@@ -83,7 +83,7 @@ impl Reader<'_, '_> {
         if kind == "SphereLight" && (is_point || cone.is_some()) {
             // Seen from far away, a sphere is a disc. The intensity of a normalized sphere does not
             // depend on its radius.
-            let intensity = if normalize { 0.25 } else { PI * (radius * scale).powi(2) };
+            let intensity = if normalize { 0.25 } else { PI * (radius * scale) * (radius * scale) };
             let color = radiance * (intensity / PI) as f32;
             let position = to_world.translation.as_vec3();
             let spectrum = spectrum.map(|path| FileName { path, span: at });
@@ -141,7 +141,7 @@ impl Reader<'_, '_> {
         let intensity = self.input(prim, "intensity").unwrap_or(default);
         let exposure = self.input(prim, "exposure").unwrap_or(0.0).clamp(-100.0, 100.0);
         let color = self.triple(prim, "inputs:color").or_else(|| self.triple(prim, "color")).unwrap_or([1.0; 3]);
-        let factor = intensity * exposure.exp2();
+        let factor = intensity * f64::from(fp::pow(2.0, exposure as f32));
         let radiance = DVec3::from_array(color) * factor;
         let has_temperature = ["inputs:enableColorTemperature", "enableColorTemperature"];
         let has_temperature = has_temperature.iter().any(|name| self.boolean(prim, name) == Some(true));

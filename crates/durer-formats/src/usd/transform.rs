@@ -30,7 +30,7 @@ pub(super) fn local_transform(stage: &Stage, prim: &Prim) -> (DAffine3, bool) {
             continue;
         };
         // USD multiplies row vectors from the left, so the first operation is the outermost.
-        whole = whole * if inverted { map.inverse() } else { map };
+        whole *= if inverted { map.inverse() } else { map };
     }
     (whole, resets)
 }
