@@ -305,13 +305,20 @@ fn class_report_is_a_matrix_of_students_and_pictures() {
 see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
 see(`same ${document.querySelector(".group").textContent}`);
 see(`csv ${window.table().split("\r\n").length}`);
+see(`named ${window.table().includes('"no-shadows"')}`);
 document.querySelector("#matrix figure").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
 see(`picked ${$("name").textContent}`);
 see(`narrow ${document.documentElement.scrollWidth <= document.documentElement.clientWidth}`);
 done();
 "##;
-    let wanted =
-        ["cells 3", "same ada, bob - scene.png: there are no shadows", "csv 5", "picked ada/scene.png", "narrow true"];
+    let wanted = [
+        "cells 3",
+        "same ada, bob - scene.png: there are no shadows",
+        "csv 5",
+        "named true",
+        "picked ada/scene.png",
+        "narrow true",
+    ];
     sees(&folder, "class.html", clicks, &wanted);
 }
 
