@@ -6,6 +6,7 @@ mod checked_scene;
 mod fix;
 mod json;
 mod render_review;
+mod views;
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;

@@ -1,6 +1,7 @@
 //! Implements `durer compare`, which compares pictures with references.
 
 mod args;
+mod class_table;
 mod compared_pair;
 mod mistakes;
 mod page;
@@ -16,6 +17,8 @@ use crate::progress;
 use crate::report::counted;
 use crate::terminal::print_line;
 pub use args::CompareArgs;
+use args::RenderingArgs;
+use class_table::ClassTable;
 use compared_pair::{ComparedPair, Outcome, name};
 use durer::diag::{format_bytes_down, format_bytes_up};
 use durer::format::folder::FolderSource;
@@ -51,18 +54,26 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
     let report = args.report.as_ref().map(|path| registry.register_output("--report", path)).transpose()?;
     let heat_file = args.heat.as_ref().map(|path| registry.register_output("--heat", path)).transpose()?;
-    let memory = args.reading.memory.bytes().unwrap_or(u64::MAX);
-    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    let options = Options { tolerance: args.tolerance, allowed_share: args.allow / 100.0, transfer };
+    let memory = args.rendering.reading.memory.bytes().unwrap_or(u64::MAX);
+    let table = args.table.as_deref().map(|path| ClassTable::read(path, memory)).transpose()?;
+    args.table.iter().try_for_each(|path| registry.register_input(path))?;
+    table.iter().try_for_each(|table| table.check(&comparison.pairs))?;
+    let options = |pair: &Pair| Options {
+        tolerance: args.tolerance,
+        allowed_share: args.allow / 100.0,
+        transfer: rendering(args, table.as_ref(), pair).transfer(),
+    };
 
     let (names, folders, extra) =
         (comparison.pairs.iter().map(name).collect::<Vec<_>>(), comparison.folders, comparison.extra);
-    let mut all: Vec<ComparedPair> =
-        progress::each(&names, comparison.pairs, false, |pair| one(pair, &options, memory, args.report.is_some()));
+    let mut all: Vec<ComparedPair> = progress::each(&names, comparison.pairs, false, |pair| {
+        let options = options(&pair);
+        one(pair, &options, memory, args.report.is_some())
+    });
     if let ([ComparedPair { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(invalid_input(reason));
     }
-    explain(args, &mut all, memory, &mut registry)?;
+    explain(args, table.as_ref(), &mut all, memory, &mut registry)?;
 
     if args.json {
         print_line(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
@@ -71,7 +82,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     } else if folders {
         text::table(&all, &extra);
     } else {
-        text::single(&all[0], &options);
+        text::single(&all[0], args.tolerance);
     }
     let mut files: Vec<(&Destination, Vec<u8>)> = Vec::new();
     if let (Some(destination), Some(format), Outcome::Compared(comparison)) = (&heat_file, heat_format, &all[0].outcome)
@@ -99,26 +110,28 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
 /// Traces the scene where pictures differ, and finds the mistakes that explain the difference.
 fn explain(
     args: &CompareArgs,
+    table: Option<&ClassTable>,
     all: &mut [ComparedPair],
     memory: u64,
     registry: &mut FileRegistry,
 ) -> Result<(), Failure> {
-    if args.scene.is_none() {
-        return Ok(());
-    }
-    let mut stages: Vec<(PathBuf, Option<ReferenceScene>)> = Vec::new();
+    let mut stages: Vec<(PathBuf, ReferenceScene)> = Vec::new();
     for compared in all {
         let (Outcome::Compared(comparison), Some(picture)) = (&compared.outcome, &compared.pair.picture) else {
             continue;
         };
+        let listed = table.and_then(|table| table.scene(&compared.pair));
+        let Some(scene) = listed.or(args.scene.as_deref()) else { continue };
         let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(invalid_input)?;
         // Open the scene only once per reference because all pictures of a class share it.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
-            stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, registry)?));
+            let options = rendering(args, table, &compared.pair);
+            let stage = stage(scene, options, &compared.pair, &reference, registry)?;
+            stages.insert(0, (compared.pair.reference.clone(), stage));
         }
         let index = stages.iter().find(|(path, _)| *path == compared.pair.reference);
-        let Some((_, Some(stage))) = index else { continue };
+        let Some((_, stage)) = index else { continue };
         if comparison.verdict == Verdict::Different {
             compared.note = stage.note.clone();
             compared.hits = pixel_hits(stage, comparison)?;
@@ -126,6 +139,11 @@ fn explain(
         }
     }
     Ok(())
+}
+
+/// Returns the options of a pair, which come from the table or from the command line.
+fn rendering<'a>(args: &'a CompareArgs, table: Option<&'a ClassTable>, pair: &Pair) -> &'a RenderingArgs {
+    table.and_then(|table| table.options(pair)).unwrap_or(&args.rendering)
 }
 
 /// Compares one pair of pictures. `page` is true if a report needs their pixels.

@@ -254,3 +254,23 @@ fn every_code_is_listed_once() {
     let shown: BTreeSet<&str> = names.iter().map(|name| code(name)).collect();
     assert!(shown.is_subset(&distinct), "{:?}", shown.difference(&distinct));
 }
+
+/// A finding names the file of an object that does not come from the scene file itself.
+#[test]
+fn objects_of_other_files_are_named_with_their_file() {
+    let folder = TestFolder::new();
+    folder.write("parts.txt", "Group { MaterialIndex 0 Sphere { center 0 0 -4 radius 0.2 } }\n");
+    folder.write(
+        "scene.txt",
+        "PerspectiveCamera { center 0 0 8 direction 0 0 -1 up 0 1 0 angle 40 }
+Lights { DirectionalLight { direction -1 -1 -1 color 0.9 0.9 0.9 } }
+Background { color 0.2 0.2 0.4 ambientLight 0.2 0.2 0.2 }
+Materials { PhongMaterial { diffuseColor 0.8 0.5 0.3 } }
+Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1.5 }
+  include parts.txt
+}
+",
+    );
+    let output = folder.run("check scene.txt").out;
+    assert!(output.contains("the `Sphere` of line 1 of `parts.txt` is hidden by the `Sphere` of line 5"), "{output}");
+}

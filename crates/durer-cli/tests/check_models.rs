@@ -151,3 +151,54 @@ fn causes_in_models_are_reported_first_and_in_neutral_words() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// A single light that misses most of a model leaves the picture nearly black, although a metal
+/// shows a few highlights.
+#[test]
+fn models_whose_only_light_misses_them_are_reported() {
+    let folder = TestFolder::new();
+    let scene = |light: &str| {
+        format!(
+            "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 75\nIntegrator \"path\" \"integer maxdepth\" \
+             8\nLookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n{light}\nMaterial \
+             \"diffuse\"\nAttributeBegin Translate -2.2 0 0 Shape \"sphere\" \"float radius\" 1 AttributeEnd\nMaterial \
+             \"conductor\" \"float roughness\" 0.1\nShape \"sphere\" \"float radius\" 1\nAttributeBegin Translate 2.2 0 0 \
+             Shape \"sphere\" \"float radius\" 1 AttributeEnd\n"
+        )
+    };
+    let distant = "LightSource \"distant\" \"point3 from\" [ 3 1 1 ] \"point3 to\" [ 0 0 0 ]";
+    folder.write("one.pbrt", scene(distant));
+    folder.write("sky.pbrt", scene(&format!("{distant}\nLightSource \"infinite\" \"rgb L\" [ 0.3 0.3 0.3 ]")));
+    let output = folder.expect_exit(1, "check one.pbrt").out;
+    assert!(output.contains("mostly-black") && output.contains("the scene's only light does not reach it"), "{output}");
+    assert!(!folder.run("check sky.pbrt").out.contains("mostly-black"));
+}
+
+/// If the automatic camera sees only the outside of a room, a view beside the scene is offered.
+#[test]
+fn views_beside_a_radiance_scene_are_offered() {
+    let folder = TestFolder::new();
+    let wall = |corners: &str| format!("grey polygon wall\n0\n0\n12 {corners}\n");
+    let room: String = [
+        "-4 -4 0  4 -4 0  4 4 0  -4 4 0",
+        "-4 -4 4  -4 4 4  4 4 4  4 -4 4",
+        "-4 -4 0  -4 -4 4  4 -4 4  4 -4 0",
+        "-4 4 0  4 4 0  4 4 4  -4 4 4",
+        "-4 -4 0  -4 4 0  -4 4 4  -4 -4 4",
+        "4 -4 0  4 -4 4  4 4 4  4 4 0",
+    ]
+    .map(wall)
+    .concat();
+    let lamp = "lamp polygon panel\n0\n0\n12  -0.5 0.5 3.9   0.5 0.5 3.9   0.5 -0.5 3.9   -0.5 -0.5 3.9\n";
+    let materials: String = RADIANCE.lines().take(8).map(|line| format!("{line}\n")).collect();
+    folder.write("room.rad", format!("{materials}{room}{lamp}"));
+    let before = folder.expect_exit(1, "check room.rad").out;
+    assert!(before.contains("black") && !before.contains("--view-file"), "{before}");
+    folder.write("inside.vf", "rvu -vtv -vp 0 -3 2 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 60\n");
+    let offered = "use the view in `inside.vf`: `durer render room.rad --view-file inside.vf`";
+    let output = folder.expect_exit(1, "check room.rad").out;
+    assert!(output.contains(offered), "{output}");
+    let output = folder.expect_exit(0, "render room.rad -o a.png --size 40x30 --samples 4 -q");
+    assert!(output.err.contains(offered), "{}", output.err);
+    assert!(!folder.run("check room.rad --view-file inside.vf").out.contains("--view-file inside.vf`"));
+}

@@ -305,13 +305,20 @@ fn class_report_is_a_matrix_of_students_and_pictures() {
 see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
 see(`same ${document.querySelector(".group").textContent}`);
 see(`csv ${window.table().split("\r\n").length}`);
+see(`named ${window.table().includes('"no-shadows"')}`);
 document.querySelector("#matrix figure").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
 see(`picked ${$("name").textContent}`);
 see(`narrow ${document.documentElement.scrollWidth <= document.documentElement.clientWidth}`);
 done();
 "##;
-    let wanted =
-        ["cells 3", "same ada, bob - scene.png: there are no shadows", "csv 5", "picked ada/scene.png", "narrow true"];
+    let wanted = [
+        "cells 3",
+        "same ada, bob - scene.png: there are no shadows",
+        "csv 5",
+        "named true",
+        "picked ada/scene.png",
+        "narrow true",
+    ];
     sees(&folder, "class.html", clicks, &wanted);
 }
 
@@ -400,6 +407,51 @@ fn pictures_of_paths_are_judged_against_their_noise() {
     );
     let output = folder.expect_exit(1, &format!("compare right.png one.png --scene other.txt {options}"));
     assert!(output.out.contains("cause unknown") && !output.err.contains("error["), "{}{}", output.out, output.err);
+}
+
+/// A table lists a scene and options for each picture, and the CSV output names the mistakes.
+#[test]
+fn each_picture_can_have_its_own_scene_and_options() {
+    let folder = TestFolder::new();
+    ["ref", "class/ann", "class/bob", "scenes"]
+        .iter()
+        .for_each(|name| std::fs::create_dir_all(folder.path(name)).unwrap());
+    std::fs::rename(folder.path("scene.txt"), folder.path("scenes/one.txt")).unwrap();
+    let one = std::fs::read_to_string(folder.path("scenes/one.txt")).unwrap();
+    folder.write("scenes/two.txt", one.replace("color 0.2 0.1 0.5", "color 0.5 0.1 0.2"));
+    let (a, b) = ("--size 60x50 --samples 1", "--size 50x50 --samples 1 --dialect f04 --transfer course");
+    for (picture, scene, options) in [
+        ("ref/a", "one", a),
+        ("ref/b", "two", b),
+        ("class/ann/a", "one", "--size 60x50 --samples 1 --shadows=off"),
+        ("class/ann/b", "two", b),
+        ("class/bob/a", "one", a),
+        ("class/bob/b", "two", "--size 50x50 --samples 1 --dialect f04 --transfer course --shadows=on"),
+    ] {
+        folder.expect_exit(0, &format!("render scenes/{scene}.txt -q -o {picture}.png {options}"));
+    }
+    let options = "--samples 1 --dialect f04 --transfer course";
+    folder.write(
+        "class.csv",
+        format!("Picture,Scene,Options\r\na.png,scenes/one.txt,--samples 1\r\nb,scenes/two.txt,{options}\r\n"),
+    );
+    let output = folder.expect_exit(1, "compare ref class --table class.csv --csv");
+    let line = |start: &str| output.out.lines().find(|line| line.starts_with(start)).unwrap().to_string();
+    assert!(line("ann,a.png").contains(",no-shadows,there are no shadows"), "{}", output.out);
+    assert!(line("bob,b.png").contains(",shadows-added,"), "{}", output.out);
+    assert!(line("ann,b.png").contains(",identical,") && line("bob,a.png").contains(",identical,"), "{}", output.out);
+    // Errors name the line of the table.
+    for (text, words) in [
+        ("scene\nscenes/one.txt\n", "has no column `picture`"),
+        ("picture;scene\na.png;scenes/one.txt\nc.png;x.txt\n", "class.csv:3: there is no reference picture `c.png`"),
+        ("picture,options\na,--samples 1\nb,--sample 1\n", "class.csv:3: in the column `options`: unexpected argument"),
+        ("picture\na\na\n", "class.csv:3: the picture `a` is already in class.csv:2"),
+        ("picture,options\na,\"--dialect 'f04\"\n", "class.csv:2: a quotation mark"),
+    ] {
+        folder.write("class.csv", text);
+        folder.expect_failure(2, "compare ref class --table class.csv", &[words]);
+    }
+    folder.expect_failure(2, "compare ref class --table none.csv", &["none.csv"]);
 }
 
 #[test]

@@ -318,4 +318,15 @@ fn numbers_say_where_they_come_from() {
         let json = folder.expect_exit(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
         assert!(json.contains("\"origins\"") && json.contains(words[0]), "{json}");
     }
+    // The sky comes from the face that the ray hits.
+    std::fs::create_dir(folder.path("sky")).unwrap();
+    for face in ["left", "right", "up", "down", "front", "back"] {
+        folder.write(&format!("sky/{face}.ppm"), "P3\n1 1\n255\n99 99 99\n");
+    }
+    folder.write("sky.txt", ORIGINS.replace("Background {", "Background { cubeMap sky"));
+    for form in ["", "--json"] {
+        let text = folder.expect_exit(0, &format!("explain sky.txt --ray 0 40 5 0.1 1 0.1 {form}")).out;
+        assert!(text.contains("face `up` of the cube map `sky` of 1 x 1 texels"), "{text}");
+        assert!(text.contains("1 · texel (0, 0): 99 99 99 by the sRGB curve"), "{text}");
+    }
 }

@@ -21,12 +21,6 @@ pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<SceneNode> {
 /// Returns an object with its subtree, or `None` if the maximum number of nodes has been reached.
 fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<SceneNode> {
     *left = left.checked_sub(1)?;
-    let below: &[Object] = match &object.node {
-        ObjectKind::Group(group) => &group.objects,
-        ObjectKind::Transform(_, inner) => std::slice::from_ref(inner),
-        ObjectKind::Solid(_, parts) => parts,
-        _ => &[],
-    };
     let name = match &object.node {
         ObjectKind::Group(_) => "Group".into(),
         ObjectKind::Transform(..) => "Transform".into(),
@@ -40,7 +34,7 @@ fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Optio
         name,
         place: compiled.place(object.span),
         material: object.material,
-        nodes: below.iter().map_while(|object| node(compiled, object, left)).collect(),
+        nodes: object.node.children().iter().map_while(|object| node(compiled, object, left)).collect(),
     })
 }
 

@@ -68,6 +68,9 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
         let own = folder.join(scene.name);
         std::fs::create_dir_all(&own)?;
         std::fs::write(own.join("scene.txt"), scene.text())?;
+        if scene.sky {
+            std::fs::create_dir_all(own.join("sky"))?;
+        }
         scene.files().into_iter().try_for_each(|(name, text)| std::fs::write(own.join(name), text))?;
         let mut render = Command::new(durer);
         render.current_dir(&own).args(["render", "scene.txt", "-o", "right.ppm", "-q"]).args(scene.options());

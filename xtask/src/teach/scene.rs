@@ -42,9 +42,62 @@ pub struct Object {
     pub material: usize,
 }
 
+/// Pattern that mixes two materials of a scene of the judge: a checkerboard, noise by its octaves, or
+/// veins by octaves, frequency and amplitude.
+#[derive(Clone, Copy, Debug)]
+pub enum Pattern {
+    Checkerboard,
+    Noise(u32),
+    Marble(u32, f64, f64),
+    Wood(u32, f64, f64),
+}
+
+/// Pixels of a texture or of a face of the sky, starting with the top row.
+pub struct Pixels {
+    pub width: usize,
+    pub height: usize,
+    seed: u32,
+}
+
+impl Pixels {
+    /// Returns the texture of the textured materials.
+    pub fn texture() -> Self {
+        Pixels { width: 7, height: 5, seed: 1 }
+    }
+
+    /// Returns a face of the sky, in the order left, right, up, down, front, back.
+    pub fn face(face: u32) -> Self {
+        Pixels { width: 6, height: 6, seed: 2 + face }
+    }
+
+    /// Returns a pixel.
+    pub fn at(&self, x: usize, y: usize) -> [u8; 3] {
+        let mix = |channel: u32| {
+            let n = (self.seed * 64 + (y * self.width + x) as u32).wrapping_mul(3) + channel;
+            let n = (n ^ n >> 3).wrapping_mul(0x9e37_79b9);
+            40 + ((n ^ n >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8 / 5 * 4
+        };
+        [mix(0), mix(1), mix(2)]
+    }
+
+    /// Returns the pixels as a PPM file.
+    fn ppm(&self) -> String {
+        let mut text = format!("P3\n{} {}\n255\n", self.width, self.height);
+        for pixel in 0..self.width * self.height {
+            let [r, g, b] = self.at(pixel % self.width, pixel / self.width);
+            let _ = writeln!(text, "{r} {g} {b}");
+        }
+        text
+    }
+}
+
 /// Phong material in a scene of the judge.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Material {
+    /// True if the texture replaces the diffuse colour.
+    pub textured: bool,
+    /// Pattern with its transform, and the indices of the two materials that it mixes.
+    pub pattern: Option<(Pattern, &'static [Transform], [usize; 2])>,
     pub kd: Vec3,
     pub ks: Vec3,
     pub shininess: f64,
@@ -75,6 +128,8 @@ pub struct Scene {
     /// Field of view in degrees, or minus the size of an orthographic picture.
     pub angle: f64,
     pub background: Vec3,
+    /// True if a cube map replaces the background.
+    pub sky: bool,
     pub ambient: Vec3,
     pub lights: Vec<Light>,
     pub materials: Vec<Material>,
@@ -106,6 +161,22 @@ fn v(Vec3(x, y, z): Vec3) -> String {
     format!("{x} {y} {z}")
 }
 
+fn ops(all: &[Transform]) -> String {
+    let one = |op: &Transform| match op {
+        Transform::Translate(by) => format!("Translate {}", v(*by)),
+        Transform::Scale(by) => format!("Scale {}", v(*by)),
+        Transform::X(angle) => format!("XRotate {angle}"),
+        Transform::Y(angle) => format!("YRotate {angle}"),
+        Transform::Z(angle) => format!("ZRotate {angle}"),
+    };
+    all.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+/// Returns the texture coordinates of a mesh's vertex.
+pub fn uv(Vec3(x, y, _): Vec3) -> (f64, f64) {
+    (0.5 + 0.6 * x, 0.5 + 0.7 * y)
+}
+
 impl Scene {
     /// Returns the scene as text in the course's language.
     pub fn text(&self) -> String {
@@ -128,9 +199,24 @@ impl Scene {
                 }
             };
         }
-        let _ = writeln!(t, "}}\nBackground {{ color {} ambientLight {} }}", v(self.background), v(self.ambient));
+        let sky = if self.sky { " cubeMap sky" } else { "" };
+        let _ = writeln!(t, "}}\nBackground {{ color {} ambientLight {}{sky} }}", v(self.background), v(self.ambient));
         let _ = writeln!(t, "Materials {{\n  numMaterials {}", self.materials.len());
         for m in &self.materials {
+            if let Some((pattern, space, [first, second])) = m.pattern {
+                let (word, numbers) = match pattern {
+                    Pattern::Checkerboard => ("Checkerboard", String::new()),
+                    Pattern::Noise(octaves) => ("Noise", format!(" octaves {octaves}")),
+                    Pattern::Marble(o, f, a) => ("Marble", format!(" octaves {o} frequency {f} amplitude {a}")),
+                    Pattern::Wood(o, f, a) => ("Wood", format!(" octaves {o} frequency {f} amplitude {a}")),
+                };
+                let space = ops(space);
+                let _ = writeln!(
+                    t,
+                    "  {word} {{ Transform {{ {space} }} materialIndex {first} materialIndex {second}{numbers} }}"
+                );
+                continue;
+            }
             let _ = write!(t, "  Material {{ diffuseColor {} specularColor {}", v(m.kd), v(m.ks));
             let _ = match self.year {
                 Year::F04 | Year::Durer => write!(
@@ -144,6 +230,9 @@ impl Scene {
                 Year::F12a5 if m.index > 0.0 => write!(t, " shininess {} refractionIndex {}", m.shininess, m.index),
                 _ => write!(t, " shininess {}", m.shininess),
             };
+            if m.textured {
+                let _ = write!(t, " texture texture.ppm");
+            }
             let _ = writeln!(t, " }}");
         }
         let _ = writeln!(t, "}}\nGroup {{\n  numObjects {}", self.objects.len());
@@ -156,37 +245,45 @@ impl Scene {
                 }
                 Shape::Mesh(file, ..) => format!("TriangleMesh {{ obj_file {file} }}"),
             };
-            let ops: Vec<String> = object
-                .ops
-                .iter()
-                .map(|op| match op {
-                    Transform::Translate(by) => format!("Translate {}", v(*by)),
-                    Transform::Scale(by) => format!("Scale {}", v(*by)),
-                    Transform::X(angle) => format!("XRotate {angle}"),
-                    Transform::Y(angle) => format!("YRotate {angle}"),
-                    Transform::Z(angle) => format!("ZRotate {angle}"),
-                })
-                .collect();
-            let _ = match ops.is_empty() {
+            let _ = match object.ops.is_empty() {
                 true => writeln!(t, "  MaterialIndex {}\n  {shape}", object.material),
                 false => {
-                    writeln!(t, "  MaterialIndex {}\n  Transform {{ {}\n    {shape} }}", object.material, ops.join(" "))
+                    writeln!(
+                        t,
+                        "  MaterialIndex {}\n  Transform {{ {}\n    {shape} }}",
+                        object.material,
+                        ops(&object.ops)
+                    )
                 }
             };
         }
         t + "}\n"
     }
 
-    /// Returns names and contents of the mesh files that the scene refers to.
+    /// Returns names and contents of the files that the scene refers to.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let mut files = Vec::new();
         for object in &self.objects {
             if let Shape::Mesh(name, corners, faces) = &object.shape {
                 let mut text = String::new();
                 text.extend(corners.iter().map(|p| format!("v {}\n", v(*p))));
-                text.extend(faces.iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)));
+                if self.materials[object.material].textured {
+                    text.extend(corners.iter().map(|p| uv(*p)).map(|(u, v)| format!("vt {u} {v}\n")));
+                    let corner = |i: usize| format!("{0}/{0}", i + 1);
+                    text.extend(faces.iter().map(|f| format!("f {}\n", f.map(corner).join(" "))));
+                } else {
+                    text.extend(faces.iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)));
+                }
                 files.push((*name, text + "\n"));
             }
+        }
+        if self.materials.iter().any(|material| material.textured) {
+            files.push(("texture.ppm", Pixels::texture().ppm()));
+        }
+        if self.sky {
+            let names =
+                ["sky/left.ppm", "sky/right.ppm", "sky/up.ppm", "sky/down.ppm", "sky/front.ppm", "sky/back.ppm"];
+            files.extend((0..6).zip(names).map(|(face, name)| (name, Pixels::face(face).ppm())));
         }
         files
     }

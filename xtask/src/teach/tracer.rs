@@ -1,6 +1,8 @@
 //! The judge's tracer, which is independent of the library and can make common mistakes by name.
 
-use super::scene::{Light, Material, Object, Scene, Shape, Transform, Year};
+mod colors;
+
+use super::scene::{Light, Material, Object, Scene, Shape, Transform, Year, uv};
 use super::vector::{Matrix, Vec3};
 
 /// A picture with eight bits per channel, starting with the top row.
@@ -20,8 +22,13 @@ struct Hit {
     /// Shading normal in world space.
     n: Vec3,
     geo: Vec3,
+    uv: Option<(f64, f64)>,
     object: usize,
 }
+
+/// Root of a ray with an object in object space: t, shading and geometric normal, and texture
+/// coordinates.
+type Root = (f64, Vec3, Vec3, Option<(f64, f64)>);
 
 impl<'s> Tracer<'s> {
     /// Creates a tracer for a scene with some mistakes.
@@ -63,7 +70,7 @@ impl<'s> Tracer<'s> {
 
     /// Returns all roots of a ray with an object in object space, each with its geometric and
     /// shading normal.
-    fn roots(&self, object: &Object, o: Vec3, d: Vec3) -> Vec<(f64, Vec3, Vec3)> {
+    fn roots(&self, object: &Object, o: Vec3, d: Vec3) -> Vec<Root> {
         let triangle = |p: [Vec3; 3]| {
             let n = (p[1] - p[0]).cross(p[2] - p[0]);
             let t = (p[0] - o).dot(n) / d.dot(n);
@@ -89,16 +96,18 @@ impl<'s> Tracer<'s> {
                 let one = |t: f64| {
                     let p = o + d * t;
                     let n = if self.is("sphere-normals") { p.unit() } else { (p - c).unit() };
-                    (t, n, (p - c).unit())
+                    let Vec3(x, y, z) = (p - c).unit();
+                    let uv = (x.atan2(-z) / std::f64::consts::TAU + 0.5, y.asin() / std::f64::consts::PI + 0.5);
+                    (t, n, (p - c).unit(), Some(uv))
                 };
                 vec![one((-b - root.sqrt()) / a), one((-b + root.sqrt()) / a)]
             }
             Shape::Plane(n, offset) => {
                 let offset = if self.is("plane-negated") { -offset } else { *offset };
                 let t = (offset - n.dot(o)) / n.dot(d);
-                if t.is_finite() { vec![(t, n.unit(), n.unit())] } else { Vec::new() }
+                if t.is_finite() { vec![(t, n.unit(), n.unit(), None)] } else { Vec::new() }
             }
-            Shape::Triangle(p) => triangle(*p).map(|(t, n, _)| (t, n, n)).into_iter().collect(),
+            Shape::Triangle(p) => triangle(*p).map(|(t, n, _)| (t, n, n, None)).into_iter().collect(),
             Shape::Mesh(_, corners, faces) => {
                 let smooth =
                     matches!(self.scene.year, Year::F12a4) && !self.is("normals-flat") || self.is("normals-smooth");
@@ -119,7 +128,10 @@ impl<'s> Tracer<'s> {
                     } else {
                         n
                     };
-                    found.push((t, mixed, n));
+                    let all = face.map(|i| uv(corners[i]));
+                    let w = if self.is("texture-vertices") { [w[1], w[2], w[0]] } else { w };
+                    let sum = |of: fn((f64, f64)) -> f64| (0..3).map(|i| w[i] * of(all[i])).sum::<f64>();
+                    found.push((t, mixed, n, Some((sum(|p| p.0), sum(|p| p.1)))));
                 }
                 found
             }
@@ -137,8 +149,8 @@ impl<'s> Tracer<'s> {
             if self.is("local-direction-unit") {
                 ld = ld.unit();
             }
-            let mut own: Option<(f64, Vec3, Vec3)> = None;
-            for (t, n, geo) in self.roots(object, lo, ld) {
+            let mut own: Option<Root> = None;
+            for (t, n, geo, uv) in self.roots(object, lo, ld) {
                 let least = if self.is("hits-behind") { f64::NEG_INFINITY } else { least };
                 let mesh = matches!(object.shape, Shape::Mesh(..));
                 let better = own.as_ref().is_none_or(|b| match () {
@@ -151,13 +163,16 @@ impl<'s> Tracer<'s> {
                     continue;
                 }
                 if t > least && t < most && better {
-                    own = Some((t, n, geo));
+                    own = Some((t, n, geo, uv));
                 }
             }
-            let Some((t, n, geo)) = own else { continue };
+            let Some((t, n, geo, uv)) = own else { continue };
             let normal = |n: Vec3| match () {
                 () if self.is("normals-local") => n,
                 () if self.is("normals-moved") => to_world.vector(n).unit(),
+                () if self.is("normals-moved-long") => to_world.vector(n),
+                () if self.is("normals-inverse") => back.vector(n).unit(),
+                () if self.is("normals-transposed") => to_world.transposed().vector(n).unit(),
                 () if self.is("normals-long") => back.transposed().vector(n),
                 () if self.is("normals-mixed-long") => back.transposed().vector(n).unit() * n.length(),
                 () => back.transposed().vector(n).unit(),
@@ -169,14 +184,10 @@ impl<'s> Tracer<'s> {
                 () => t < b.t,
             });
             if better {
-                best = Some(Hit { t, n: normal(n), geo: back.transposed().vector(geo).unit(), object: number });
+                best = Some(Hit { t, n: normal(n), geo: back.transposed().vector(geo).unit(), uv, object: number });
             }
         }
         best
-    }
-
-    fn background(&self) -> Vec3 {
-        self.scene.background
     }
 
     fn epsilon(&self, shadow: bool) -> f64 {
@@ -209,7 +220,7 @@ impl<'s> Tracer<'s> {
         let p = if self.is("epsilon-0") { single(p) } else { p };
         match self.hit(p, l, self.epsilon(true), most) {
             // The second program of 2012 considers only front faces of the nearest object.
-            Some(hit) if self.scene.year == Year::F12a5 => hit.n.dot(l) <= 0.0,
+            Some(hit) if self.scene.year == Year::F12a5 && !self.is("shadow-fronts") => hit.n.dot(l) <= 0.0,
             hit => hit.is_some(),
         }
     }
@@ -224,7 +235,10 @@ impl<'s> Tracer<'s> {
             material = scene.materials[(scene.objects[hit.object].material + 1) % scene.materials.len()];
         }
         let p = o + d * hit.t;
-        let side = if matches!(scene.year, Year::Durer) { hit.geo } else { hit.n };
+        let own = material.kd;
+        material = self.colored(material, p, self.places[hit.object].1.point(p), hit.uv);
+        let one = self.is("normals-inverse") || self.is("normals-transposed") || self.is("normals-moved");
+        let side = if matches!(scene.year, Year::Durer) && !one { hit.geo } else { hit.n };
         let back = d.dot(side) > 0.0;
         let mut n = hit.n;
         let faced = scene.year == Year::Durer && !self.is("backs-not-shaded") || self.is("normals-faced");
@@ -232,12 +246,14 @@ impl<'s> Tracer<'s> {
             n = -n;
         }
         let mut color = Vec3::ZERO;
+        // In 2012, textures do not affect the ambient light.
+        let ambient_kd = if scene.year == Year::F12a4 && material.textured { own } else { material.kd };
         let ambient = match () {
             () if self.is("no-ambient") => Vec3::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
-            () if self.is("x-ambient-brighter") => scene.ambient * material.kd * 1.6,
-            () if self.is("ambient-each-light") => scene.ambient * material.kd * scene.lights.len() as f64,
-            () => scene.ambient * material.kd,
+            () if self.is("x-ambient-brighter") => scene.ambient * ambient_kd * 1.6,
+            () if self.is("ambient-each-light") => scene.ambient * ambient_kd * scene.lights.len() as f64,
+            () => scene.ambient * ambient_kd,
         };
         if !(scene.year == Year::F04 && back && !faced) {
             color = ambient;
@@ -276,7 +292,12 @@ impl<'s> Tracer<'s> {
                     continue;
                 }
                 free = true;
-                let direct = self.direct(&material, n, d, l) * light;
+                let mut direct = self.direct(&material, n, d, l) * light;
+                if let (true, Light::Point(_, c, _)) = (self.is("falloff-of-highlights"), *emitter) {
+                    // Only highlights fade.
+                    let bare = Material { ks: Vec3::ZERO, ..material };
+                    direct = direct + self.direct(&bare, n, d, l) * (c - light);
+                }
                 if self.is("greatest-light") {
                     greatest = Vec3(greatest.0.max(direct.0), greatest.1.max(direct.1), greatest.2.max(direct.2));
                     continue;
@@ -347,6 +368,7 @@ impl<'s> Tracer<'s> {
             () if self.is("exponent-plus-one") => exponent + 1.0,
             () => exponent,
         };
+        let exponent = if self.is("exponent-4") { 4.0 * material.shininess } else { exponent };
         let blinn = matches!(self.scene.year, Year::F04 | Year::Durer) != self.is("other-model");
         let base = if blinn {
             let h = l - d;
@@ -420,15 +442,24 @@ impl<'s> Tracer<'s> {
                 let root = 1.0 - eta * (1.0 - c * c);
                 (root >= 0.0).then(|| (d - n * c) * eta - n * root.sqrt())
             }
+            () if root < 0.0 && self.is("total-clamped") => Some((d - n * c) * eta),
+            () if root < 0.0 && self.is("total-mirrored") => Some(mirror),
+            () if root < 0.0 && self.is("total-straight") => Some(d),
+            () if root < 0.0 && kt.max_component() > 0.0 && self.is("total-black") => {
+                return Vec3(f64::NAN, f64::NAN, f64::NAN);
+            }
+            () if self.is("root-added") => (root >= 0.0).then(|| (d - n * c) * eta + n * root.sqrt()),
             () => (root >= 0.0).then(|| (d - n * c) * eta - n * root.sqrt()),
         };
         if glassy && !self.is("no-fresnel") {
             let r0 = ((there - here) / (there + here)).powi(2);
             let cosine = if here <= there { c.abs() } else { through.map_or(0.0, |t| t.dot(n).abs()) };
-            let r = through.map_or(1.0, |_| match self.is("fresnel-constant") {
+            let total = if self.is("total-lost") { r0 + (1.0 - r0) * (1.0 - c.abs()).powi(5) } else { 1.0 };
+            let r = through.map_or(total, |_| match self.is("fresnel-constant") {
                 true => r0,
                 false => r0 + (1.0 - r0) * (1.0 - cosine).powi(5),
             });
+            let r = if self.is("fresnel-exchanged") { 1.0 - r } else { r };
             (kr, kt) = (kr * r, kt * (1.0 - r));
         }
         let mut color = Vec3::ZERO;
@@ -440,6 +471,7 @@ impl<'s> Tracer<'s> {
             }
             if let (Some(t), true) = (through, kt.max_component() > 0.0 && !self.is("no-refraction")) {
                 let weight = if self.is("glass-in-full") { Vec3::ONE } else { kt };
+                let (p, there) = if self.is("glass-in-front") { (p + n * 0.003, here) } else { (p, there) };
                 color = color + weight * self.trace(p, t, bounces - 1, there, false);
             }
         }
@@ -455,7 +487,7 @@ impl<'s> Tracer<'s> {
         match self.hit(o, d, least, f64::INFINITY) {
             Some(hit) => self.shade(o, d, &hit, bounces, index),
             None if !first && self.is("secondary-black-sky") => Vec3::ZERO,
-            None => self.background(),
+            None => self.background(d),
         }
     }
 
@@ -465,15 +497,19 @@ impl<'s> Tracer<'s> {
         let (w, h) = (scene.size.0 as f64, scene.size.1 as f64);
         let (i, j) = (i as f64, h - 1.0 - j as f64);
         let border = matches!(scene.year, Year::F12a4 | Year::F12a5 | Year::F16) != self.is("border-pixels");
-        let old = border;
         let place = |i: f64, n: f64| match (border, self.is("pixel-corner")) {
             (_, true) => 2.0 * i / n - 1.0,
             (true, _) => 2.0 * i / (n - 1.0) - 1.0,
             (false, _) => 2.0 * (i + 0.5) / n - 1.0,
         };
         let (mut x, mut y) = (place(i, w), place(j, h));
+        if self.is("border-columns") {
+            x = 2.0 * i / (w - 1.0) - 1.0;
+        }
+        if self.is("center-over-less-one") {
+            (x, y) = (2.0 * (i + 0.5) / (w - 1.0) - 1.0, 2.0 * (j + 0.5) / (h - 1.0) - 1.0);
+        }
         let stretched = matches!(scene.year, Year::F12a4 | Year::F12a5 | Year::F16) != self.is("stretch");
-        let _ = old;
         if !stretched {
             let most = w.max(h);
             (x, y) = match () {
@@ -531,6 +567,7 @@ impl<'s> Tracer<'s> {
                 () => curve(c.max(0.0)),
             };
             match (self.is("wrapped"), self.scene.year) {
+                (true, Year::Durer) => ((c * 255.0 + 0.5) as i64 & 255) as u8,
                 (true, _) => ((c * 255.0) as i64 & 255) as u8,
                 (_, Year::Durer) => (c * 255.0 + 0.5).clamp(0.0, 255.0) as u8,
                 _ => (c * 255.0).clamp(0.0, 255.0) as u8,

@@ -1,6 +1,8 @@
 //! Wrong pictures for testing `durer compare`: scenes that the judge's tracer renders with
 //! mistakes.
 
+mod more;
+
 use super::scene::{Light, Material, Object, Scene, Shape, Transform, Year};
 use super::vector::Vec3;
 
@@ -65,6 +67,7 @@ pub fn scenes() -> Vec<Scene> {
         up: Vec3(0.0, 1.0, 0.0),
         angle: 36.0,
         background: Vec3(0.2, 0.1, 0.6),
+        sky: false,
         ambient: Vec3(0.15, 0.15, 0.2),
         lights: vec![SUN, bulb(Vec3(3.0, 4.0, 3.0), Vec3(1.0, 0.9, 0.5), Vec3(1.0, 0.05, 0.03))],
         materials: vec![
@@ -194,7 +197,10 @@ pub fn scenes() -> Vec<Scene> {
     let facets =
         Scene { name: "facets", shadows: false, objects: beside_a_ball(octahedron("facets.obj", 1.0)), ..old.clone() };
     let cubes = Scene { name: "cubes", year: Year::F12a5, bounces: 1, ..facets.clone() };
-    vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
+    let more = more::scenes(&old);
+    let mut all = vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes];
+    all.extend(more);
+    all
 }
 
 /// Mistakes that are made alone, for each scene.
@@ -455,6 +461,13 @@ pub fn cases() -> Vec<Case> {
             .iter()
             .flat_map(|(scene, names)| names.iter().map(|name| Case { scene: *scene, mistakes: vec![*name] })),
     );
+    let scenes = scenes();
+    let number = |name: &str| scenes.iter().position(|scene| scene.name == name).unwrap_or_default();
+    cases.extend(
+        more::SINGLE.iter().flat_map(|(scene, names)| {
+            names.iter().map(move |name| Case { scene: number(scene), mistakes: vec![*name] })
+        }),
+    );
     for scene in [0, 1, 5, 6] {
         cases.extend(UNKNOWN.iter().map(|name| Case { scene, mistakes: vec![*name] }));
     }
@@ -472,6 +485,6 @@ pub fn description(made: &str) -> &str {
         "x-materials-swapped" => "other-material",
         "x-kd-squared" => "diffuse-twice",
         "x-second-light-unshadowed" => "shadows-of-one-light",
-        other => other,
+        other => more::description(other).unwrap_or(other),
     }
 }

@@ -1,6 +1,7 @@
 //! Reads a scene and checks it.
 
 use super::args::CheckArgs;
+use super::views;
 use crate::failure::Failure;
 use crate::job::job;
 use crate::open::load_options;
@@ -47,7 +48,10 @@ pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Che
             let job = job(&args.job, Some(&args.view), loaded, false)?;
             let exposure = args.exposure.factor()?;
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
-            check(&CheckInput { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
+            let input = CheckInput { scene, world, dialect, files, job: &job, exposure, rejected: None };
+            let mut findings = check(&input, &diagnostics);
+            views::offer(&mut findings, scene, path);
+            findings
         }
         _ => reader_findings(&diagnostics),
     };

@@ -1,5 +1,6 @@
 //! Checks a scene after a render whose picture looks wrong.
 
+use super::views;
 use crate::open::CompiledInput;
 use crate::report;
 use crate::terminal::print_error_line;
@@ -10,6 +11,7 @@ use durer::diag::Diagnostic;
 use durer::image::{Display, Layer, Tone};
 use durer::math::Color;
 use durer::render::{Job, Statistics};
+use std::path::Path;
 
 /// Maximum number of findings printed.
 const MAX_PRINTED: usize = 3;
@@ -75,7 +77,8 @@ impl RenderReview<'_> {
         let (loaded, files) = (&self.compiled.loaded, &self.compiled.files);
         let (scene, world, dialect) = (&loaded.scene, &self.compiled.world, loaded.dialect);
         let input = CheckInput { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
-        let found = check(&input, &self.compiled.diagnostics);
+        let mut found = check(&input, &self.compiled.diagnostics);
+        views::offer(&mut found, scene, Path::new(files.name(0).unwrap_or_default()));
         let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
         // Skip findings that were already printed before the render.
         let is_known = |diagnostic: &Diagnostic| {

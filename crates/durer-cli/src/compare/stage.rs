@@ -1,7 +1,7 @@
 //! Opens the scene of a pair of pictures and finds the options with which the reference was
 //! rendered.
 
-use super::args::CompareArgs;
+use super::args::RenderingArgs;
 use super::pairs::Pair;
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -45,23 +45,23 @@ struct RenderGuess {
 /// options do not reproduce it, tries the ones that students often forget: the dialect, one sample
 /// per pixel, shadows, and the number of bounces.
 pub fn stage(
-    args: &CompareArgs,
+    scene: &Path,
+    args: &RenderingArgs,
     pair: &Pair,
     reference: &Picture,
     registry: &mut FileRegistry,
-) -> Result<Option<ReferenceScene>, Failure> {
-    let Some(scene) = &args.scene else { return Ok(None) };
+) -> Result<ReferenceScene, Failure> {
     let path = path(scene, pair)?;
     let requested = load_options(&args.reading);
     let first = compiled(args, &path, &requested, reference, registry)?;
-    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+    let transfer = args.transfer();
     let mut best = (reference_difference(&first, reference, transfer), first, transfer, None);
     // With filters wider than a pixel, edges cannot be reproduced exactly.
     let enough = if best.1.1.sampling.is_local() { MAX_SAME } else { MAX_SAME_FILTERED };
     // The course's programs have no path tracer, so there are no other dialects to try in this
     // case.
     if best.0 <= enough || best.1.1.method.path_options().is_some() {
-        return Ok(Some(reference_scene(args, path, best.1, best.2, None)));
+        return Ok(reference_scene(args, path, best.1, best.2, None));
     }
     let guessed = requested.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
     let mut dialects = vec![requested.dialect];
@@ -108,7 +108,7 @@ pub fn stage(
     if off <= MAX_SAME {
         stage.note = Some(format!("inferred that the reference was rendered with `{}`", stage.options));
     }
-    Ok(Some(stage))
+    Ok(stage)
 }
 
 impl RenderGuess {
@@ -122,7 +122,7 @@ impl RenderGuess {
 }
 
 fn reopened(
-    args: &CompareArgs,
+    args: &RenderingArgs,
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
@@ -136,7 +136,7 @@ fn reopened(
 
 /// Opens the scene in a candidate dialect. Returns `None` if the scene cannot be read in it.
 fn tried(
-    args: &CompareArgs,
+    args: &RenderingArgs,
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
@@ -147,7 +147,7 @@ fn tried(
 }
 
 fn compiled(
-    args: &CompareArgs,
+    args: &RenderingArgs,
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
@@ -175,7 +175,7 @@ fn reference_difference((compiled, job): &(CompiledInput, Job), reference: &Pict
 }
 
 fn reference_scene(
-    args: &CompareArgs,
+    args: &RenderingArgs,
     path: PathBuf,
     (compiled, job): (CompiledInput, Job),
     transfer: Transfer,

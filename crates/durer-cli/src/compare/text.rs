@@ -6,7 +6,7 @@ use super::mistakes;
 use super::pixel_hit::PixelHit;
 use crate::report::counted;
 use crate::terminal::{print_error_line, print_line};
-use durer::image::compare::{Options, Region, Verdict};
+use durer::image::compare::{Region, Verdict};
 use durer::report;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 const VERSION: u32 = 1;
 
 /// Prints the comparison of a single pair.
-pub fn single(compared: &ComparedPair, options: &Options) {
+pub fn single(compared: &ComparedPair, largest_allowed: f32) {
     let Outcome::Compared(comparison) = &compared.outcome else { return };
     let measures = &comparison.measures;
     let pixels = comparison.width as usize * comparison.height as usize;
@@ -25,7 +25,7 @@ pub fn single(compared: &ComparedPair, options: &Options) {
         measures.over_tolerance,
         counted(pixels, "pixel"),
         100.0 * measures.over_tolerance as f64 / pixels as f64,
-        tolerance(options.tolerance),
+        tolerance(largest_allowed),
     );
     match comparison.verdict {
         Verdict::Identical => print_line("identical"),

@@ -108,21 +108,11 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
     }
 }
 
-/// Returns the children of a node.
-fn parts(node: &ObjectKind) -> &[Object] {
-    match node {
-        ObjectKind::Group(group) => &group.objects,
-        ObjectKind::Solid(_, parts) => parts,
-        ObjectKind::Transform(_, object) => std::slice::from_ref(object),
-        _ => &[],
-    }
-}
-
 /// Returns true if an object contains a shape that is a stand-in (if `wanted`) or a shape that is
 /// not one (if `!wanted`).
 fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     let own = object.material.is_some_and(|number| stand_in.get(number as usize) == Some(&true));
-    match parts(&object.node) {
+    match object.node.children() {
         [] => own == wanted,
         parts => parts.iter().any(|part| has(part, stand_in, wanted)),
     }

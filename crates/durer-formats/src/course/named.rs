@@ -142,11 +142,5 @@ impl Reader<'_, '_> {
 
 /// Returns the number of objects of which an object consists, including the object itself.
 fn count(object: &Object) -> usize {
-    let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
-    1 + match &object.node {
-        ObjectKind::Group(group) => all(&group.objects),
-        ObjectKind::Transform(_, inner) => count(inner),
-        ObjectKind::Solid(_, parts) => all(parts),
-        _ => 0,
-    }
+    object.node.children().iter().map(count).fold(1, usize::saturating_add)
 }

@@ -247,8 +247,9 @@ impl Reader<'_> {
         match plugin.number(report, "max_depth") {
             Some(-1.0) => self.scene.render_defaults.bounces = Some(UNLIMITED_BOUNCES),
             Some(depth) if (0.0..=1e6).contains(&depth) => {
-                self.scene.render_defaults.bounces = Some((depth as u32).saturating_sub(2));
-                self.emitters_only = depth < 2.0;
+                let (limit, defaults) = (depth as u32, &mut self.scene.render_defaults);
+                defaults.bounces = Some(limit.saturating_sub(2));
+                defaults.no_scattering = (limit < 2).then(|| (limit, plugin.span("max_depth")));
             }
             Some(_) => report.error(plugin.span("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
             None if plugin.kind.contains("path") => self.scene.render_defaults.bounces = Some(UNLIMITED_BOUNCES),

@@ -199,6 +199,7 @@ impl Reader<'_> {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
             return self.report.push(error.at(light.at()).related(first.at(), "the first one is here"));
         }
+        self.scene.background_span = light.at();
         self.infinite = Some(light);
     }
 

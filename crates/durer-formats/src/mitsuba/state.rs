@@ -37,8 +37,6 @@ pub(super) struct Reader<'a> {
     /// its glass applies outside it.
     pub inside_out: bool,
     pub infinite: Option<InfiniteLight>,
-    /// True if scattered light is not rendered because `max_depth` is below 2.
-    pub emitters_only: bool,
     pub scene: Scene,
 }
 
@@ -54,7 +52,6 @@ impl<'a> Reader<'a> {
             groups: BTreeMap::new(),
             inside_out: false,
             infinite: None,
-            emitters_only: false,
             scene: Scene::default(),
         }
     }
@@ -84,7 +81,7 @@ impl<'a> Reader<'a> {
         self.camera(&sensors);
         self.set_environment();
         join_bodies(&mut self.scene, self.input.name);
-        if self.emitters_only {
+        if self.scene.render_defaults.no_scattering.is_some() {
             emitters_only::blacken(&mut self.scene);
         }
         if self.scene.root.is_none() && !self.report.has_errors() {

@@ -319,7 +319,11 @@ impl Reader<'_> {
         }
         match params.integer("maxdepth").unwrap_or(5) {
             depth @ 1..=1_000_000 => self.scene.render_defaults.bounces = Some(depth as u32 - 1),
-            0 => (self.scene.render_defaults.bounces, self.emitters_only) = (Some(0), true),
+            0 => {
+                let at = params.get("maxdepth").map_or(params.at, |param| param.values_at);
+                let defaults = &mut self.scene.render_defaults;
+                (defaults.bounces, defaults.no_scattering) = (Some(0), Some((0, at)));
+            }
             _ => self.report.error(params.span("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
         }
         params.mark_known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);

@@ -475,7 +475,7 @@ impl Reader<'_> {
             self.report.push(error.help(format!("add the missing `{end}`")));
         }
         crate::glass_bodies::join_bodies(&mut self.scene, self.input.name);
-        if self.emitters_only {
+        if self.scene.render_defaults.no_scattering.is_some() {
             crate::emitters_only::blacken(&mut self.scene);
         }
         self.make_camera();

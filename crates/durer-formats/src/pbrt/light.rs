@@ -121,6 +121,7 @@ impl Reader<'_> {
     }
 
     fn infinite_light(&mut self, params: &Params, exposure: f32) {
+        self.scene.background_span = params.at;
         if self.language == Language::V3 {
             let color = color(params, "L") * exposure;
             params.mark_known(&["samples", "nsamples"]);

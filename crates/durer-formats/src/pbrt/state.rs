@@ -107,8 +107,6 @@ pub(super) struct Reader<'a> {
     pub too_early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<InfiniteLight>,
-    /// True if scattered light is not rendered because `maxdepth` is 0.
-    pub emitters_only: bool,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
 }
@@ -142,7 +140,6 @@ impl<'a> Reader<'a> {
             too_early: None,
             in_world: false,
             infinite: Vec::new(),
-            emitters_only: false,
             meshes: BTreeMap::new(),
             scene: Scene::default(),
         }

@@ -41,7 +41,7 @@ impl World {
 
     /// Returns the value, from 0 to 1, of a numeric texture at a hit. The value is 1 if there are
     /// no texture coordinates.
-    pub(super) fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
+    pub fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
         mapping.map_to_range(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)

@@ -174,7 +174,7 @@ impl Background {
 
 /// Render settings that a scene file requests for its picture. Command-line options override these
 /// settings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RenderDefaults {
     /// Width and height in pixels.
     pub size: Option<(u32, u32)>,
@@ -185,6 +185,10 @@ pub struct RenderDefaults {
     pub samples: Option<u32>,
     /// Maximum number of scattering events after the first.
     pub bounces: Option<u32>,
+    /// Depth limit that allows no scattering, and its place in the file. Only pbrt and Mitsuba
+    /// files can have such a limit; their readers make all materials black.
+    #[serde(skip)]
+    pub no_scattering: Option<(u32, Span)>,
 }
 
 impl RenderDefaults {
@@ -254,6 +258,17 @@ impl Scene {
 }
 
 impl Scene {
+    /// Iterates over all objects in the order of the file. Groups, transforms and solids precede
+    /// the objects of which they consist.
+    pub fn objects(&self) -> impl Iterator<Item = &Object> {
+        let mut next: Vec<&Object> = self.root.iter().flat_map(|root| root.objects.iter().rev()).collect();
+        std::iter::from_fn(move || {
+            let object = next.pop()?;
+            next.extend(object.node.children().iter().rev());
+            Some(object)
+        })
+    }
+
     /// True if a surface, an environment map or the sun emits light.
     pub fn emits_light(&self) -> bool {
         let emits = |material: &Spanned<Material>| match &material.value {
@@ -337,6 +352,18 @@ pub enum ObjectKind {
     HeightField(HeightField),
     /// Closed objects combined into one solid.
     Solid(CsgOperation, Vec<Object>),
+}
+
+impl ObjectKind {
+    /// Returns the objects of which a group, a transform or a solid consists.
+    pub fn children(&self) -> &[Object] {
+        match self {
+            ObjectKind::Group(group) => &group.objects,
+            ObjectKind::Transform(_, object) => std::slice::from_ref(object),
+            ObjectKind::Solid(_, parts) => parts,
+            ObjectKind::Primitive(_) | ObjectKind::Mesh(_) | ObjectKind::Voxels(..) | ObjectKind::HeightField(_) => &[],
+        }
+    }
 }
 
 /// Boolean operation that combines closed objects into a solid. A group counts as the union of its

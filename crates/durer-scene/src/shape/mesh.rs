@@ -296,7 +296,7 @@ impl Mesh {
 
     /// Returns the texture coordinates at the corners of a triangle, if it has any.
     #[inline]
-    fn corner_uvs(&self, triangle: u32) -> Option<[Vec2; 3]> {
+    pub fn corner_uvs(&self, triangle: u32) -> Option<[Vec2; 3]> {
         match &self.storage {
             TriangleStorage::Lists(data) => attribute(&data.triangle_uvs, &data.uvs, triangle),
             TriangleStorage::Terrain(terrain) => {

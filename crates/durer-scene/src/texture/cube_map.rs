@@ -16,13 +16,14 @@ impl CubeMap {
     /// File names of the faces without extension, in the order -x, +x, +y, -y, +z, -z.
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
-    /// Colour in a direction in world space. The component with the largest absolute value selects
-    /// the face. If components are equal, x takes precedence over y, and y over z.
+    /// Face that a direction in world space hits, and the coordinates on it. The component with the
+    /// largest absolute value selects the face. If components are equal, x takes precedence over y,
+    /// and y over z.
     ///
     /// Seen from inside, every face is upright and not mirrored. The upward direction of the image
     /// is y on the four sides, z on `up` and -z on `down`, so that all six faces meet without a
     /// seam.
-    pub fn at(&self, direction: Vec3) -> Color {
+    pub fn face(&self, direction: Vec3) -> (usize, Vec2) {
         let Vec3 { x, y, z } = direction;
         let d = direction.abs();
         let h = |q: f32| 0.5 * (q + 1.0);
@@ -40,6 +41,12 @@ impl CubeMap {
             5 if self.mirrored_back => (1.0 - u, v),
             _ => (u, v),
         };
-        self.faces[face].at(Vec2::new(u, v))
+        (face, Vec2::new(u, v))
+    }
+
+    /// Colour in a direction in world space.
+    pub fn at(&self, direction: Vec3) -> Color {
+        let (face, uv) = self.face(direction);
+        self.faces[face].at(uv)
     }
 }

@@ -8,7 +8,7 @@ use durer_scene::dialect::{Dialect, Quirk, SecondaryRays};
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::material::Pattern;
 use durer_scene::math::Color;
-use durer_scene::scene::{Material as ParsedMaterial, Object as WrittenObject, ObjectKind, Spanned};
+use durer_scene::scene::{Material as ParsedMaterial, ObjectKind, Spanned};
 
 /// Materials that reflect less than this look black.
 const BLACK: f32 = 0.01;
@@ -435,10 +435,9 @@ fn dull_by_color(scene_probe: &SceneProbe) -> Vec<Finding> {
     phongs(scene_probe).filter(dull).take(MAX_FINDINGS).map(say).collect()
 }
 
-/// Returns the span of the `Background` section, which the compiled scene does not store.
+/// Returns the span of the background in the scene file, or `None` if the file has none.
 pub(super) fn background_span(scene_probe: &SceneProbe) -> Option<Span> {
-    let file = scene_probe.input.scene.camera_span.file;
-    durer_formats::course::place::section(scene_probe.input.files.bytes(file)?, file, "Background")
+    Some(scene_probe.input.scene.background_span).filter(|span| span.has_position())
 }
 
 /// Reports colours with negative channels.
@@ -545,21 +544,6 @@ pub(super) fn no_coordinates(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Marks the materials of an object and of its parts as they are written in the scene file. Empty
-/// solids have no compiled parts.
-fn mark_written(object: &WrittenObject, used: &mut [bool]) {
-    match &object.node {
-        ObjectKind::Group(group) => group.objects.iter().for_each(|inner| mark_written(inner, used)),
-        ObjectKind::Transform(_, inner) => mark_written(inner, used),
-        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| mark_written(part, used)),
-        _ => {
-            if let Some(used) = object.material.and_then(|material| used.get_mut(material as usize)) {
-                *used = true;
-            }
-        }
-    }
-}
-
 /// Reports materials that no object uses.
 pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
@@ -576,8 +560,13 @@ pub(super) fn unused(scene_probe: &SceneProbe) -> Vec<Finding> {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }
     }
-    let root = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects);
-    root.for_each(|object| mark_written(object, &mut used));
+    // Empty solids have no compiled parts.
+    for object in scene_probe.input.scene.objects() {
+        let of_parts = matches!(object.node, ObjectKind::Group(_) | ObjectKind::Transform(..) | ObjectKind::Solid(..));
+        if let Some(used) = object.material.filter(|_| !of_parts).and_then(|material| used.get_mut(material as usize)) {
+            *used = true;
+        }
+    }
     let material = &scene_probe.input.scene.materials;
     let unused: Vec<usize> = (0..material.len()).filter(|&i| !used[i]).collect();
     let Some(&first) = unused.first() else { return Vec::new() };

@@ -1,12 +1,10 @@
 //! Checks the maximum depth of paths.
 
 use super::brightness::exposed_colors_with;
-use super::finding::{Finding, number, percent};
+use super::finding::{Finding, percent};
 use super::scene_probe::SceneProbe;
-use durer_diag::{Diagnostic, Span};
+use durer_diag::Diagnostic;
 use durer_render::integrator::RenderSettings;
-use durer_scene::math::Vec3;
-use durer_scene::scene::Material;
 
 /// Number of bounces of the comparison with indirect light.
 const MANY_BOUNCES: u32 = 8;
@@ -19,36 +17,15 @@ const VISIBLE: f32 = 0.005;
 const MIN_DARK: f32 = 0.6;
 const MIN_GAINED: f32 = 0.2;
 
-/// Returns the depth limit of a pbrt or Mitsuba file that allows no scattering, with its keyword
-/// and its place. The readers make all materials of such a file black.
-pub(super) fn emitters_only(scene_probe: &SceneProbe) -> Option<(&'static str, f32, Span)> {
-    let scene = scene_probe.input.scene;
-    if scene.render_defaults.bounces != Some(0) {
-        return None;
-    }
-    let (word, skipped, least) = match scene_probe.model_format()?.name {
-        "pbrt" => ("maxdepth", "", 1.0),
-        "Mitsuba" => ("max_depth", "value=", 2.0),
-        _ => return None,
-    };
-    let black = scene.materials.iter().all(|material| match &material.value {
-        Material::Principled(m) => m.base_color == Vec3::ZERO && m.specular_weight == 0.0,
-        Material::Solid(..) => true,
-        _ => false,
-    });
-    let place = super::model_text::find(scene_probe, word)?;
-    let (value, span) = super::model_text::number_after(scene_probe, place, skipped)?;
-    (black && value < least).then_some((word, value, span))
-}
-
 /// Reports paths that are too short for the scene: those that end at the first surface, and those
 /// without indirect light in a scene that has hardly any direct light.
 pub(super) fn limited(scene_probe: &SceneProbe) -> Vec<Finding> {
     if !scene_probe.is_physical() {
         return Vec::new();
     }
-    if let Some((word, depth, span)) = emitters_only(scene_probe) {
-        let depth = number(depth);
+    if let Some((depth, span)) = scene_probe.input.scene.render_defaults.no_scattering {
+        let pbrt = scene_probe.model_format().is_some_and(|format| format.name == "pbrt");
+        let word = if pbrt { "maxdepth" } else { "max_depth" };
         let diagnostic =
             Diagnostic::warning(format!("paths end at the first surface because the maximum depth is {depth}"))
                 .at(span)

@@ -16,8 +16,8 @@ use durer_scene::scene::Material as ParsedMaterial;
 /// Radiance below which a surface is black in an eight-bit picture.
 const BLACK: f32 = 0.001;
 /// Minimum number of tenths of the surface samples that must be black for the picture to count as
-/// black.
-const MIN_BLACK_TENTHS: usize = 9;
+/// black. The second number applies to models without an environment that have a single light.
+const MIN_BLACK_TENTHS: [usize; 2] = [9, 6];
 /// Minimum number of surface samples needed for a conclusion.
 const MIN_SAMPLES: usize = 20;
 
@@ -60,15 +60,10 @@ pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).affecting_whole_picture(alone)]
 }
 
-/// Reports an environment light of a model whose colour or scale is 0. The reader keeps no trace of
-/// such a light, so the text of the file is searched for it.
+/// Reports an environment light of a pbrt or Mitsuba file whose colour or scale is 0.
 fn black_model_sky(scene_probe: &SceneProbe) -> Option<Finding> {
-    let world = scene_probe.world();
-    let words: &[&str] = match scene_probe.model_format()?.name {
-        "pbrt" => &["LightSource \"infinite\""],
-        "Mitsuba" => &["<emitter type=\"constant\"", "<emitter type=\"envmap\""],
-        _ => return None,
-    };
+    let (world, place) = (scene_probe.world(), background_span(scene_probe)?);
+    scene_probe.model_format()?;
     let lit = world.environment().is_some()
         || world.background() != Color::ZERO
         || world.lights().iter().any(|light| light.color() != Color::ZERO)
@@ -76,7 +71,6 @@ fn black_model_sky(scene_probe: &SceneProbe) -> Option<Finding> {
     if lit {
         return None;
     }
-    let place = words.iter().find_map(|word| super::model_text::find(scene_probe, word))?;
     let diagnostic = Diagnostic::warning("the environment light is black: its colour times its scale is 0")
         .at(place)
         .effect("nothing else emits light, so the picture is black")
@@ -104,7 +98,12 @@ fn black_samples(scene_probe: &SceneProbe) -> Option<(usize, usize)> {
         .filter_map(|(probe, color): (&Probe, Color)| probe.hit.as_ref().filter(|hit| reflects(hit)).map(|_| color));
     let (all, black) =
         own.fold((0, 0), |(all, black), color| (all + 1, black + usize::from(color.max_element() < BLACK)));
-    (all >= MIN_SAMPLES && black * 10 >= all * MIN_BLACK_TENTHS).then_some((black, all))
+    let lone = scene_probe.model_format().is_some()
+        && world.lights().len() == 1
+        && world.environment().is_none()
+        && (world.background() == Color::ZERO || world.is_dark())
+        && emissive_objects(scene_probe).is_empty();
+    (all >= MIN_SAMPLES && black * 10 >= all * MIN_BLACK_TENTHS[usize::from(lone)]).then_some((black, all))
 }
 
 /// Reports directional lights without extent that reach the visible surfaces only through glass,
@@ -178,12 +177,16 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Some((black, all)) = black_samples(scene_probe) else { return Vec::new() };
     let model = scene_probe.model_format().is_some();
     let diagnostic = Diagnostic::warning(format!(
-        "{} of the visible surface area is black: the scene's lights do not reach it",
-        percent(black, all)
+        "{} of the visible surface area is black: {}",
+        percent(black, all),
+        match scene_probe.world().lights().len() {
+            1 if model => "the scene's only light does not reach it, or is reflected past the camera",
+            _ => "the scene's lights do not reach it",
+        }
     ))
     .effect("hardly anything except the background is visible")
     .help(match model {
-        true => "use `--studio sun`, which lights a model from outside and replaces its lights",
+        true => "use `--studio sun`, which lights a model from outside and replaces its lights, or `--environment`",
         false => "move the light to the camera's side, add another light, or write `Background { color 0.3 0.3 0.3 }`",
     });
     let span = scene_probe.input.scene.lights.iter().flatten().next().map(|light| light.span);

@@ -38,7 +38,7 @@ pub(super) fn thickness(scene_probe: &SceneProbe, material: usize) -> Option<f32
 /// Reports layered materials that reflect no light.
 pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     // The reader of a model without scattering makes all materials black.
-    if super::depth::emitters_only(scene_probe).is_some() {
+    if scene_probe.input.scene.render_defaults.no_scattering.is_some() {
         return Vec::new();
     }
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {

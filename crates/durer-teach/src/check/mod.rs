@@ -30,7 +30,6 @@ mod lens;
 mod lights;
 mod mesh;
 mod mesh_files;
-mod model_text;
 mod names;
 mod neutral;
 mod numbers;

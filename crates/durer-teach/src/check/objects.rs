@@ -92,32 +92,28 @@ pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
 fn empty_grids(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let mut findings = Vec::new();
-    let mut all: Vec<&Written> = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects).collect();
-    while let Some(object) = all.pop().filter(|_| findings.len() < MAX_FINDINGS) {
-        match &object.node {
-            ObjectKind::Group(group) => all.extend(&group.objects),
-            ObjectKind::Transform(_, inner) => all.push(inner),
-            ObjectKind::Voxels(grid, balls) if !balls.is_empty() => {
-                let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
-                let filled = |own: &Object| match &own.geometry {
-                    Geometry::Mesh(tree) => !tree.mesh.is_empty(),
-                    Geometry::Primitive(_) | Geometry::Solid(_) => true,
-                };
-                if world.objects().iter().find(is_it).is_some_and(filled) {
-                    continue;
-                }
-                let diagnostic = Diagnostic::warning("no cell of this `Grid` is filled")
-                    .at(object.span)
-                    .effect("the grid is invisible")
-                    .help(format!(
-                        "move a `rasterizeSphere` into the box from {} to {}, or make the sphere larger: a sphere \
-                         fills the cells whose centers are inside the sphere",
-                        vector(grid.min),
-                        vector(grid.max)
-                    ));
-                findings.push(Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none()));
-            }
-            _ => {}
+    for object in scene_probe.input.scene.objects() {
+        let ObjectKind::Voxels(grid, balls) = &object.node else { continue };
+        let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
+        let filled = |own: &Object| match &own.geometry {
+            Geometry::Mesh(tree) => !tree.mesh.is_empty(),
+            Geometry::Primitive(_) | Geometry::Solid(_) => true,
+        };
+        if balls.is_empty() || world.objects().iter().find(is_it).is_some_and(filled) {
+            continue;
+        }
+        let diagnostic = Diagnostic::warning("no cell of this `Grid` is filled")
+            .at(object.span)
+            .effect("the grid is invisible")
+            .help(format!(
+                "move a `rasterizeSphere` into the box from {} to {}, or make the sphere larger: a sphere fills the \
+                 cells whose centers are inside the sphere",
+                vector(grid.min),
+                vector(grid.max)
+            ));
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none()));
+        if findings.len() == MAX_FINDINGS {
+            break;
         }
     }
     findings

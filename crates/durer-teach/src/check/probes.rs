@@ -188,13 +188,16 @@ impl<'a> ProbeGrid<'a> {
     }
 
     /// Names an object by its keyword and line. An object of a model is named by its own name and
-    /// position.
+    /// position. If the object comes from another file than the scene, that file is named too.
     pub(super) fn object(&self, number: u32) -> String {
-        let span = self.object_span(number);
-        let (line, column) = self.input.files.position(span).unwrap_or_default();
-        match self.names().name_without_keyword(number) {
-            Some(name) => format!("{name} at {line}:{column}"),
-            None => format!("`{}` of line {line}", self.text(span)),
+        let (span, files) = (self.object_span(number), self.input.files);
+        let (line, column) = files.position(span).unwrap_or_default();
+        let file = files.name(span.file).filter(|_| span.file != 0);
+        match (self.names().name_without_keyword(number), file) {
+            (Some(name), None) => format!("{name} at {line}:{column}"),
+            (Some(name), Some(file)) => format!("{name} at {file}:{line}:{column}"),
+            (None, None) => format!("`{}` of line {line}", self.text(span)),
+            (None, Some(file)) => format!("`{}` of line {line} of `{file}`", self.text(span)),
         }
     }
 

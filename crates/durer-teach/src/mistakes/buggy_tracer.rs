@@ -4,11 +4,13 @@
 //! It is separate from [`Whitted`] so that the renderer contains no code for mistakes. A test
 //! checks that both return bit-identical colours if there are no mistakes.
 
+mod colors;
 mod hits;
+mod lights;
 
 use super::bugs::{
-    Ambient, Attenuation, BehindOrigin, Bugs, Cosine, Fresnel, Glass, HalfVector, HitChoice, LightSum, Mirror, Normals,
-    PointLightDirection, ShadowDirection, ShadowRayEnd, SphereNormal,
+    Ambient, BehindOrigin, Bugs, Fresnel, Glass, HitChoice, LightSum, Mirror, Normals, ShadowDirection, ShadowRayEnd,
+    SphereNormal, TotalReflection,
 };
 use super::variant::{CourseShape, course_shape};
 use durer_render::integrator::media::MediumStack;
@@ -16,13 +18,15 @@ use durer_render::integrator::media::MediumTransition;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{SpecularBlend, fresnel_share};
 use durer_render::integrator::{RenderSettings, Whitted, refract};
-use durer_render::world::{Epsilon, Geometry, HighlightModel, Phong, SurfaceInteraction, WeightedMaterial, World};
+use durer_render::world::{Epsilon, Geometry, SurfaceInteraction, WeightedMaterial, World};
 use durer_scene::camera::Projection;
-use durer_scene::light::{Illuminate, Light, LightLiSample};
+use durer_scene::light::LightLiSample;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use durer_scene::shape::{Primitive, SurfacePoint};
-use glam::DVec3;
 use smallvec::SmallVec;
+
+/// Least distance by which rays start on the wrong side of a surface.
+const FRONT: f32 = 1e-3;
 
 /// Whitted ray tracer that makes the mistakes in `bugs`, as a student's program might.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +84,7 @@ impl<'w> BuggyTracer<'w> {
         match self.bugs.sky.filter(|(_, all)| path.first || *all) {
             Some((color, _)) => color,
             None if self.bugs.bounces.black_sky && !path.first => Color::ZERO,
-            None => self.world.background_radiance(ray.dir()),
+            None => self.sky(ray.dir()),
         }
     }
 
@@ -99,9 +103,7 @@ impl<'w> BuggyTracer<'w> {
             surface.n_shade *= mixed.length();
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.normal_permutation > 0) {
-            const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
-            let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
-            let [_, u, v] = ORDERS[bugs.normal_permutation.min(5)].map(|i| weights[i]);
+            let [_, u, v] = permuted(bugs.normal_permutation, hit.uv);
             if let Some(mixed) = tree.mesh.interpolated_normal(hit.part, Vec2::new(u, v)) {
                 let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.unnormalized_normal(mixed));
                 surface.n_shade = world.normalize_or(surface.n_shade);
@@ -117,7 +119,15 @@ impl<'w> BuggyTracer<'w> {
                 Normals::Local => local,
                 Normals::Long => to_world.unnormalized_normal(local),
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
+                Normals::Transposed => to_world.inverse_normal(local),
+                Normals::LongMoved => to_world.vector(local),
             };
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.colors.uv_permutation > 0)
+            && let Some([a, b, c]) = tree.mesh.corner_uvs(hit.part)
+        {
+            let [u, v, w] = permuted(bugs.colors.uv_permutation, hit.uv);
+            surface.uv = (u * a + v * b + w * c).into();
         }
         if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (SphereNormal::Position | SphereNormal::Long)) =
             (&object.geometry, bugs.sphere_normals)
@@ -145,10 +155,15 @@ impl<'w> BuggyTracer<'w> {
         at
     }
 
+    /// Returns true if a ray hits the back of a surface.
+    fn sees_back(&self, at: &SurfaceInteraction) -> bool {
+        if self.bugs.one_normal { at.ray.dir().dot(at.surface.n_shade) > 0.0 } else { self.right.sees_back(at) }
+    }
+
     fn shade(&self, at: &SurfaceInteraction, transition: Option<MediumTransition>, path: RayState) -> Color {
         let (world, bugs) = (self.world, self.bugs);
         let SurfaceInteraction { ray, surface, .. } = at;
-        let from_behind = self.right.sees_back(at);
+        let from_behind = self.sees_back(at);
         let black = from_behind && !self.settings.shade_back && world.shading_rules().black_backs;
         let turned = from_behind && (self.settings.shade_back || bugs.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
@@ -156,11 +171,10 @@ impl<'w> BuggyTracer<'w> {
         if world.shading_rules().spoiled_normals && n.is_nan() {
             return Color::ZERO;
         }
-        let parts = world.materials_at(at);
+        let parts = self.materials_at(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || bugs.faced {
-            let diffuse: SmallVec<[Color; 2]> =
-                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
+            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, at)).collect();
             let rounds = if bugs.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
             let mut ambient_seen = Color::ZERO;
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
@@ -243,129 +257,6 @@ impl<'w> BuggyTracer<'w> {
         color
     }
 
-    /// Returns the incident light, including mistakes in its direction and attenuation.
-    fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
-        let mut li = light.illuminate(point);
-        if self.bugs.lights.all_negated {
-            li.to_light = -li.to_light;
-        }
-        match light {
-            Light::Directional(_) => {
-                if self.bugs.lights.negated {
-                    li.to_light = -li.to_light;
-                }
-            }
-            Light::Point(point) => {
-                let d = li.distance;
-                match self.bugs.lights.attenuation {
-                    Attenuation::Correct => {}
-                    Attenuation::Multiplied => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color * (a.x + a.y * d + a.z * d * d);
-                    }
-                    Attenuation::Linear => li.color = point.color / d,
-                    Attenuation::Square => li.color = point.color / (d * d),
-                    Attenuation::SquaredTwice => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
-                    }
-                    Attenuation::Root => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
-                    }
-                }
-                match self.bugs.lights.points {
-                    PointLightDirection::Correct => {}
-                    PointLightDirection::Negated => li.to_light = -li.to_light,
-                    PointLightDirection::Position => li.to_light = point.position.normalize_or(li.to_light),
-                    PointLightDirection::PositionAlone => {
-                        let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
-                        li.to_light = point.position.normalize_or(li.to_light);
-                        (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
-                    }
-                    PointLightDirection::FromEye(whole) => {
-                        let way = point.position - self.world.camera().pose().center;
-                        li.to_light = way.normalize_or(li.to_light);
-                        if whole {
-                            let (a, d) = (point.attenuation.unwrap_or(Vec3::X), way.length());
-                            (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
-                        }
-                    }
-                    PointLightDirection::MinusPosition => li.to_light = -point.position.normalize_or(li.to_light),
-                }
-            }
-            // The course's programs have neither of these kinds of light.
-            Light::Spot(_) | Light::Photometric(_) => {}
-        }
-        li
-    }
-
-    /// Returns the light vector that is used in products. It has unit length unless a mistake
-    /// changes that.
-    fn light_vector(&self, light: &Light, li: &LightLiSample) -> Vec3 {
-        match light {
-            Light::Directional(sun) if self.bugs.lights.long => li.to_light * sun.direction.length(),
-            Light::Point(_) if self.bugs.lights.long_points => li.to_light * li.distance,
-            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => li.to_light,
-        }
-    }
-
-    /// Returns the diffuse term and the highlight that one light causes.
-    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, li: &LightLiSample) -> Color {
-        let bugs = self.bugs.highlights;
-        let to_light = self.light_vector(light, li);
-        let view = if bugs.eye_negated { -view } else { view };
-        let cosine = n.dot(to_light);
-        let factor = match self.bugs.cosine {
-            Cosine::Clamped => cosine.max(0.0),
-            Cosine::TwoSided => cosine.abs(),
-            Cosine::Signed => cosine,
-            Cosine::One => 1.0,
-            Cosine::None => 0.0,
-            Cosine::Squared => cosine.max(0.0) * cosine.max(0.0),
-            Cosine::Half => 0.5 * cosine + 0.5,
-            Cosine::Step => f32::from(cosine > 0.0),
-            Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
-            Cosine::View => n.dot(-view).max(0.0),
-        };
-        let factor = factor * self.bugs.diffuse_factor.unwrap_or(1.0);
-        let diffuse = if self.bugs.diffuse_twice { diffuse * diffuse } else { diffuse };
-        let plain = self.bugs.plain_diffuse && diffuse != Color::ZERO;
-        let mut color = factor * if plain { Color::ONE } else { diffuse };
-        if self.bugs.diffuse_lightless {
-            // This cancels the multiplication by `seen.color` at the end.
-            color /= li.color.max(Color::splat(1e-6));
-        }
-        if let Some((specular, exponent, model)) = phong.highlight {
-            let half = |sum: Vec3| match bugs.half {
-                HalfVector::Unit => sum.normalize_or_zero(),
-                HalfVector::Sum => sum,
-                HalfVector::Mean => 0.5 * sum,
-            };
-            let base = match model {
-                HighlightModel::Blinn => (cosine > 0.0 || bugs.everywhere).then(|| n.dot(half(to_light - view))),
-                HighlightModel::Phong { behind } => {
-                    (behind || cosine > 0.0).then(|| mirrored(view, n, bugs.mirror).dot(to_light))
-                }
-            };
-            if let Some(base) = base {
-                let base = if bugs.two_sided { base.abs() } else { base.max(0.0) };
-                let mut strength = fp::pow(base, exponent);
-                if bugs.times_cosine {
-                    strength *= cosine.max(0.0);
-                }
-                strength *= bugs.factor.unwrap_or(1.0);
-                let specular = if bugs.bare { Color::ONE } else { specular };
-                let specular = if bugs.times_diffuse { specular * diffuse } else { specular };
-                if bugs.lightless {
-                    return color * li.color + strength * specular;
-                }
-                color += strength * specular;
-            }
-        }
-        color * li.color
-    }
-
     /// Returns, for each channel, the fraction of a light that reaches a surface. It is 0 in full
     /// shadow.
     fn visible(&self, surface: &SurfacePoint, light: usize, li: &LightLiSample, first: bool) -> Color {
@@ -398,7 +289,12 @@ impl<'w> BuggyTracer<'w> {
             ShadowDirection::Away => -li.to_light,
             ShadowDirection::Normal => surface.n_shade,
         };
-        let mut ray = to_light(surface, way, reach, epsilon);
+        let mut start = *surface;
+        if self.bugs.one_normal {
+            // The wrong normal says nothing about the side on which the ray starts.
+            start.n_shade = start.n_geo;
+        }
+        let mut ray = to_light(&start, way, reach, epsilon);
         if bugs.from_eye {
             let eye = self.world.camera().pose().center;
             ray = Ray { t_min: 1e-4, t_max: reach, ..Ray::new(eye, way) }.into();
@@ -418,7 +314,7 @@ impl<'w> BuggyTracer<'w> {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return share };
             let blocker = self.world.interaction(ray, hit);
-            let parts = self.world.materials_at(&blocker);
+            let parts = self.materials_at(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
@@ -433,7 +329,7 @@ impl<'w> BuggyTracer<'w> {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
             let blocker = self.world.interaction(ray, hit);
-            let parts = self.world.materials_at(&blocker);
+            let parts = self.materials_at(&blocker);
             if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
                 return Color::ZERO;
             }
@@ -456,7 +352,7 @@ impl<'w> BuggyTracer<'w> {
             return Color::ZERO;
         }
         let SurfaceInteraction { ray, surface, .. } = at;
-        let leaving = self.right.sees_back(at);
+        let leaving = self.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         let MediumTransition { ior_front, ior_behind, behind, .. } = transition;
@@ -475,7 +371,7 @@ impl<'w> BuggyTracer<'w> {
         let rules = self.world.shading_rules();
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
         let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
-        let transmitted = match (transparent == Color::ZERO, bugs.glass) {
+        let bent = match (transparent == Color::ZERO, bugs.glass) {
             (true, _) => None,
             (false, Glass::Straight) => Some(ray.dir()),
             (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
@@ -490,6 +386,14 @@ impl<'w> BuggyTracer<'w> {
                 (k >= 0.0).then_some(eta * ray.dir() + along * n)
             }
             (false, _) => refract(ray.dir(), n, eta),
+        };
+        let is_total = bent.is_none() && transparent != Color::ZERO;
+        let transmitted = match bugs.total {
+            TotalReflection::Clamped if is_total => Some(eta * (ray.dir() - ray.dir().dot(n) * n)),
+            TotalReflection::Mirrored if is_total => Some(mirrored),
+            TotalReflection::Straight if is_total => Some(ray.dir()),
+            TotalReflection::NotANumber if is_total => return Color::NAN,
+            _ => bent,
         };
         let transmitted = match rules.raw_refraction {
             true => transmitted.map(|through| through.normalize_or(ray.dir())),
@@ -520,7 +424,8 @@ impl<'w> BuggyTracer<'w> {
                     fresnel_share(ray.dir(), n, t, indices, before)
                 }
             };
-            let r = transmitted.map_or(1.0, schlick);
+            let lost = bugs.total == TotalReflection::Lost && is_total;
+            let r = if lost { schlick(ray.dir()) } else { transmitted.map_or(1.0, schlick) };
             let r = if bugs.fresnel == Fresnel::Exchanged { 1.0 - r } else { r };
             reflective *= r;
             transparent *= 1.0 - r;
@@ -530,16 +435,21 @@ impl<'w> BuggyTracer<'w> {
             let full = bugs.mirror_in_full && reflective != Color::ZERO;
             let weight = if full { Color::ONE } else { reflective };
             let weight = match bugs.times_diffuse {
-                true => {
-                    weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>()
-                }
+                true => weight * parts.iter().map(|p| p.share * self.diffuse_color(p.phong, at)).sum::<Color>(),
                 false => weight,
             };
             color += self.bounce(surface, mirrored, weight, path.clone());
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !bugs.no_glass) {
             let weight = if bugs.glass_in_full { Color::ONE } else { transparent };
-            color += self.bounce(surface, transmitted, weight, RayState { media: behind, ..path });
+            let (mut start, mut media) = (*surface, behind);
+            if bugs.glass_in_front {
+                // The ray enters the same surface again, whatever the distance.
+                let ignored = if let Some(Epsilon::MinT(t_min)) = rules.epsilon { t_min } else { 0.0 };
+                start.position += FRONT.max(2.0 * ignored) * n;
+                media = path.media.clone();
+            }
+            color += self.bounce(&start, transmitted, weight, RayState { media, ..path });
         }
         color
     }
@@ -557,6 +467,13 @@ impl<'w> BuggyTracer<'w> {
         let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, RayState { bounces: path.bounces - 1, weight: total, first: false, ..path })
     }
+}
+
+/// Returns the weights of a triangle's vertices in a wrong order. The order 0 is correct.
+fn permuted(order: usize, uv: Vec2) -> [f32; 3] {
+    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
+    let weights = [1.0 - uv.x - uv.y, uv.x, uv.y];
+    ORDERS[order.min(5)].map(|i| weights[i])
 }
 
 /// Returns the direction of a reflected ray, computed either correctly or with a mistake.

@@ -1,7 +1,12 @@
 //! The mistakes that a student's tracer can make, given as options of
 //! [`BuggyTracer`](super::BuggyTracer).
 
-use durer_scene::math::{Color, Vec2};
+mod camera;
+mod colors;
+
+pub use camera::{Aspect, CameraBugs, OutputBug, PixelOrder, RayCount};
+pub use colors::{Cells, ColorBugs, NoiseShare, Octaves, PatternSpace, SkyDirection, SkyFaces, TextureBug, Veins};
+use durer_scene::math::Color;
 
 /// Hit along a ray that a student's tracer uses. Only `Nearest` is correct.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,6 +79,10 @@ pub enum Normals {
     Long,
     /// The matrix is the inverse, but it is not transposed.
     ByInverse,
+    /// The matrix is transposed, but it is not inverted.
+    Transposed,
+    /// The matrix is that of points, and the result is not normalised.
+    LongMoved,
 }
 
 /// Method by which a student's tracer adds the ambient light.
@@ -237,6 +246,25 @@ pub enum Glass {
     Unsquared,
 }
 
+/// What a student's tracer does in the case of total internal reflection.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TotalReflection {
+    /// There is no transmitted ray, and glass with a Fresnel term reflects all light, which is
+    /// correct.
+    #[default]
+    Correct,
+    /// A negative number below the square root counts as 0.
+    Clamped,
+    /// There is no transmitted ray, but glass reflects no more light than otherwise.
+    Lost,
+    /// The transmitted ray is a reflected ray.
+    Mirrored,
+    /// The transmitted ray is not bent.
+    Straight,
+    /// The root is not a number, which makes the pixel black.
+    NotANumber,
+}
+
 /// Fresnel term of glass in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fresnel {
@@ -276,6 +304,9 @@ pub struct LightBugs {
     pub attenuation: Attenuation,
     /// Formula for the direction to point lights.
     pub points: PointLightDirection,
+    /// Part of the light of point lights that is not attenuated: the diffuse term or, if `true`,
+    /// the highlight.
+    pub unfaded: Option<bool>,
 }
 
 /// Mistakes in the highlights of Blinn's and Phong's models.
@@ -380,6 +411,10 @@ pub struct SecondaryBugs {
     pub mirror: Mirror,
     /// Direction of transmitted rays.
     pub glass: Glass,
+    /// Total internal reflection.
+    pub total: TotalReflection,
+    /// Transmitted rays start in front of the surface instead of behind it.
+    pub glass_in_front: bool,
     /// Fresnel term of glass.
     pub fresnel: Fresnel,
     /// The local light is multiplied by 1 minus the mirror's colour.
@@ -414,6 +449,8 @@ pub struct Bugs {
     pub local_unit: bool,
     /// Method for transforming normals.
     pub normals: Normals,
+    /// Mirrors and glass use only the shading normal, even where it points away from the ray.
+    pub one_normal: bool,
     /// Interpolated vertex normals are not normalised.
     pub unnormalized_mesh_normals: bool,
     /// Meshes are shaded with one normal per triangle.
@@ -454,139 +491,6 @@ pub struct Bugs {
     pub sum: LightSum,
     /// Mistakes in reflected and transmitted rays.
     pub bounces: SecondaryBugs,
-}
-
-/// Side of a non-square picture to which a student's camera applies the field of view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Aspect {
-    /// The field of view spans the side that the dialect's program uses.
-    #[default]
-    Correct,
-    /// The field of view spans the smaller side.
-    Smaller,
-    /// The smaller side is scaled by the reciprocal of the correct factor.
-    Turned,
-}
-
-/// Mistakes in generating camera rays, in addition to the quirks of the scene's dialect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraBugs {
-    /// Position of the sample in the pixel. The centre is (0.5, 0.5).
-    pub sample_position: Vec2,
-    /// Factor by which positions on the picture plane are multiplied.
-    pub scale: f32,
-    /// Side to which the field of view applies in non-square pictures.
-    pub aspect: Aspect,
-    /// Number of rays per pixel.
-    pub rays: RayCount,
-}
-
-/// Number of camera rays per pixel in a student's tracer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RayCount {
-    /// The number that is set in the job.
-    #[default]
-    Correct,
-    /// One ray through the centre.
-    One,
-    /// A regular grid of 4 by 4 rays.
-    Sixteen,
-}
-
-impl Default for CameraBugs {
-    fn default() -> Self {
-        CameraBugs { sample_position: Vec2::splat(0.5), scale: 1.0, aspect: Aspect::Correct, rays: RayCount::Correct }
-    }
-}
-
-impl CameraBugs {
-    /// Returns the factors for positions on the picture plane, one for each axis.
-    pub fn factor(&self, width: u32, height: u32) -> Vec2 {
-        let (w, h) = (width as f32, height as f32);
-        let ratio = w.max(h) / w.min(h);
-        let aspect = match self.aspect {
-            Aspect::Correct => Vec2::ONE,
-            Aspect::Smaller => Vec2::splat(ratio),
-            Aspect::Turned if w > h => Vec2::new(1.0, ratio * ratio),
-            Aspect::Turned => Vec2::new(ratio * ratio, 1.0),
-        };
-        self.scale * aspect
-    }
-}
-
-/// Mistake that a student's program can make when it converts radiance to eight-bit values.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum OutputBug {
-    /// There is no mistake, so the transfer curve is correct.
-    #[default]
-    Correct,
-    /// The value is multiplied by this number and taken modulo 256.
-    Wrapped(u16),
-    /// The value is divided by the brightest value in the picture.
-    Scaled,
-    /// The value is rounded instead of truncated, or the reverse.
-    OtherRounding,
-    /// The value is raised to the reciprocal of this power, where 0 stands for the sRGB curve.
-    ExtraCurve(f32),
-    /// The value c becomes c / (1 + c).
-    Toned,
-    /// The value is multiplied by this factor.
-    Times(f32),
-    /// The value c becomes 1 - c.
-    Negative,
-    /// The picture is grey: 0 selects the mean of the channels, 1 the luma of Rec. 601, 2 the
-    /// luminance, 3 the maximum, 4 red, 5 green, and 6 blue.
-    Grey(u32),
-    /// The value is quantised to this many levels.
-    Steps(u32),
-    /// The value is raised to this power, where 0 stands for omitting the sRGB curve or applying
-    /// its inverse.
-    MissingCurve(f32),
-}
-
-/// The way in which a student's program rearranges the pixels and channels of a picture, for
-/// example by mirroring it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PixelOrder {
-    /// Columns and rows are exchanged if the picture is square.
-    pub exchange: bool,
-    /// The order of the columns is reversed.
-    pub columns_back: bool,
-    /// The order of the rows is reversed.
-    pub rows_back: bool,
-    /// Order of the channels, as an index into [`PixelOrder::ORDERS`]. The index 0 means unchanged,
-    /// and 1 exchanges red and blue.
-    pub channels: u8,
-    /// Shift of the picture in pixels, to the right and downwards.
-    pub moved: (i32, i32),
-    /// Pixels without a source are black instead of repeating the border.
-    pub black_border: bool,
-    /// Pixels that leave the picture on one side enter it on the other.
-    pub rolled: bool,
-    /// All pixels in each block of 2 by 2 have the same value.
-    pub halved: bool,
-}
-
-impl PixelOrder {
-    /// Source channels of red, green and blue, for each order.
-    pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]];
-
-    /// Returns true if the pixel at a position has no source and is therefore black.
-    pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
-        let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
-        self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
-    }
-
-    /// Returns the source position of the pixel at a position.
-    pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
-        let x = if self.columns_back { width - 1 - x } else { x };
-        let y = if self.rows_back { height - 1 - y } else { y };
-        let (x, y) = if self.exchange && width == height { (y, x) } else { (x, y) };
-        let from = |at: u32, by: i32, size: u32| match self.rolled {
-            true => (i64::from(at) - i64::from(by)).rem_euclid(i64::from(size)) as u32,
-            false => at.saturating_add_signed(-by).min(size - 1),
-        };
-        let (x, y) = if self.halved { (x & !1, y & !1) } else { (x, y) };
-        (from(x, self.moved.0, width), from(y, self.moved.1, height))
-    }
+    /// Mistakes in textures, the sky and patterns.
+    pub colors: ColorBugs,
 }

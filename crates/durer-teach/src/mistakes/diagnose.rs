@@ -281,10 +281,10 @@ impl<'a> Search<'a> {
             }
             step = step.sqrt();
         }
-        // Prefer a round number if it fits as well.
-        let round = (at * 20.0).round() / 20.0;
-        let fits = |tried| explained(tried, more) >= explained(at, more) - 0.002;
-        vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
+        // Prefer the roundest number that fits as well.
+        let least = explained(at, more) - 0.002;
+        let fits = |tried: &f32| *tried > 0.0 && (tried / at - 1.0).abs() < 0.05 && explained(*tried, more) >= least;
+        vec![(mistake, round_numbers(at).into_iter().find(fits).unwrap_or(at))]
     }
 
     /// Tries pairs of the best mistakes with all others, and then the best pairs with increasing
@@ -377,6 +377,12 @@ impl<'a> Search<'a> {
         let mistake = super::table::mistake_by_name("epsilon-0")?;
         Some(Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
+}
+
+/// Returns the numbers near a value, starting with the roundest.
+fn round_numbers(value: f32) -> [f32; 5] {
+    let to = |steps: f32| (value * steps).round() / steps;
+    [to(1.0), 1.0 / (1.0 / value).round(), to(2.0), to(10.0), to(20.0)]
 }
 
 fn sort(trials: &mut [Trial]) {

@@ -96,9 +96,10 @@ impl View<'_> {
             (OutputBug::MissingCurve(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
-        if let (OutputBug::Wrapped(most), true) = (output, transfer != Transfer::Srgb) {
-            let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
-            let wrapped = |v: f32| ((v * f32::from(most) + half).floor() as i64).rem_euclid(256) as f32 / 255.0;
+        if let OutputBug::Wrapped(most) = output {
+            let half = if transfer == Transfer::Course { 0.0 } else { 0.5 };
+            let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.max(0.0)) } else { v };
+            let wrapped = |v: f32| ((curved(v) * f32::from(most) + half).floor() as i64).rem_euclid(256) as f32 / 255.0;
             return light.map(wrapped);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;

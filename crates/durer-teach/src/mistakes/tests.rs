@@ -106,7 +106,10 @@ fn found(names: &[(&str, f32)]) -> Diagnosis {
 }
 
 fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
-    let (scene, world) = world_of(text, Dialect::F04.rules());
+    found_with(world_of(text, Dialect::F04.rules()), job, names)
+}
+
+fn found_with((scene, world): (Scene, World), job: Job, names: &[(&str, f32)]) -> Diagnosis {
     let right = SceneVariant::new(&scene, world, job.settings);
     let mut wrong = right.clone();
     for (name, value) in names {
@@ -192,7 +195,11 @@ const COMMON: [(&str, f32); 49] = [
 
 /// Returns the explanations of a mistake if none of them is the mistake alone.
 fn unnamed(text: &str, job: Job, name: &str, value: f32) -> Option<String> {
-    let explanations = found_in(text, job, &[(name, value)]).explanations;
+    unnamed_in(world_of(text, Dialect::F04.rules()), job, name, value)
+}
+
+fn unnamed_in(world: (Scene, World), job: Job, name: &str, value: f32) -> Option<String> {
+    let explanations = found_with(world, job, &[(name, value)]).explanations;
     if explanations.iter().any(|e| e.mistakes.len() == 1 && e.mistakes[0].0.name == name) {
         return None;
     }
@@ -262,6 +269,116 @@ fn each_further_mistake_is_named() {
     judge(&hanging, "triangle-test", 2.0);
     judge(&bright.replace("ZRotate", "XRotate"), "rotation-axis", 0.0);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A scene with patterns and a prism, whose materials are followed by the patterns that mix them.
+const PATTERNS: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
+Lights { DirectionalLight { direction -1 -2 -1 color 0.7 0.7 0.6 } }
+Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
+Materials {
+  Material { diffuseColor 0.9 0.8 0.3 }
+  Material { diffuseColor 0.1 0.2 0.6 }
+  Checkerboard { Transform { YRotate 30 Translate 0.3 0.45 0.2 } materialIndex 0 materialIndex 1 }
+  Noise { Transform { UniformScale 0.6 } materialIndex 0 materialIndex 1 octaves 3 }
+  Marble { Transform { ZRotate 40 UniformScale 0.7 } materialIndex 0 materialIndex 1 octaves 4 frequency 4 amplitude 3 } }
+Group {
+  MaterialIndex 3 Transform { Translate -1.6 0.6 0 YRotate 40 Sphere { center 0 0 0 radius 1.1 } }
+  MaterialIndex 4 Sphere { center 1.4 0.6 1 radius 1.1 }
+  MaterialIndex 2 Plane { normal 0 1 0 offset -0.5 } }
+";
+
+const PATTERN_MISTAKES: [(&str, f32); 12] = [
+    ("pattern-exchanged", 0.0),
+    ("pattern-space", 0.0),
+    ("pattern-space", 2.0),
+    ("checkerboard-truncated", 0.0),
+    ("checkerboard-remainder", 0.0),
+    ("checkerboard-axes", 1.0),
+    ("octaves", 1.0),
+    ("octave-weights", 0.0),
+    ("octave-weights", 1.0),
+    ("noise-share", 1.0),
+    ("veins", 3.0),
+    ("veins-axis", 1.0),
+];
+
+#[test]
+fn mistakes_in_patterns_are_named() {
+    let wrong: Vec<String> =
+        PATTERN_MISTAKES.iter().filter_map(|(name, value)| unnamed(PATTERNS, job(), name, *value)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn mistakes_in_textures_and_the_sky_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("sky")).unwrap();
+    let picture = |seed: u32| {
+        let code = |i: u32| (i * 7919 + seed * 104_729) % 61 * 4;
+        let pixels: String = (0..5 * 4 * 3).map(|i| format!("{} ", code(i))).collect();
+        format!("P3\n5 4\n255\n{pixels}\n")
+    };
+    std::fs::write(folder.path().join("picture.ppm"), picture(1)).unwrap();
+    for (i, face) in (2..).zip(["left", "right", "up", "down", "front", "back"]) {
+        std::fs::write(folder.path().join(format!("sky/{face}.ppm")), picture(i)).unwrap();
+    }
+    let text = "PerspectiveCamera { center 0 1 8 direction 0 0.1 -1 up 0 1 0 angle 70 }
+Lights { DirectionalLight { direction -1 -2 -1 color 0.7 0.7 0.6 } }
+Background { cubeMap sky ambientLight 0.2 0.2 0.2 }
+Materials { Material { texture picture.ppm } Material { diffuseColor 0.1 0.1 0.1 reflectiveColor 0.8 0.8 0.8 } }
+Group {
+  MaterialIndex 0 Sphere { center -1.6 0.6 3 radius 1.5 }
+  MaterialIndex 1 Sphere { center 1.6 0.6 3 radius 1.5 } }
+";
+    let wrong = [
+        ("texture-exchanged", 0.0),
+        ("texture-flipped", 0.0),
+        ("texture-flipped", 1.0),
+        ("texture-nearest", 0.0),
+        ("texture-shifted", 0.0),
+        ("texture-size", 0.0),
+        ("texture-border", 0.0),
+        ("texture-bgr", 0.0),
+        ("texture-undecoded", 0.0),
+        ("sky-direction", 0.0),
+        ("sky-direction", 4.0),
+        ("sky-faces", 0.0),
+        ("sky-mirrored", 0.0),
+        ("sky-upside-down", 2.0),
+        ("sky-rotated", 5.0),
+        ("sky-undivided", 0.0),
+        ("sky-nearest", 0.0),
+        ("sky-bgr", 0.0),
+    ];
+    let world = || world_in(folder.path(), text, &Dialect::Durer.rules().without_quirks());
+    let wrong: Vec<String> =
+        wrong.iter().filter_map(|(name, value)| unnamed_in(world(), job(), name, *value)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn mistakes_in_normals_glass_and_factors_are_named() {
+    let mirror = SCENE.replace("diffuseColor 0.8 0.3 0.2", "reflectiveColor 0.6 0.6 0.6 diffuseColor 0.8 0.3 0.2");
+    let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
+    let mut wrong = Vec::new();
+    let mut judge = |text: &str, name, value| wrong.extend(unnamed(text, job(), name, value));
+    for value in [0.0, 1.0] {
+        judge(&mirror, "normals-inverse", value);
+        judge(&mirror, "normals-transposed", value);
+    }
+    judge(&bright, "normals-long", 1.0);
+    judge(&bright, "falloff-of-one-term", 0.0);
+    judge(&bright, "falloff-of-one-term", 1.0);
+    judge(&bright, "border-of-one-axis", 0.0);
+    judge(&bright, "pixel-center-over-n-less-one", 0.0);
+    judge(&bright, "glass-in-front", 0.0);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // A factor is told as the roundest number that fits.
+    for (name, value) in [("exponent", 4.0), ("exponent", 3.0), ("diffuse-factor", 1.5), ("mirror-factor", 1.0 / 3.0)] {
+        let diagnosis = found_in(&bright, job(), &[(name, value)]);
+        let named = diagnosis.explanations[0].mistakes[0];
+        assert!(named.0.name == name && named.1 == value, "{name} {value}: {named:?}");
+    }
 }
 
 /// An unrelated picture matches no mistake, and an unrelated reference is reported.

@@ -15,8 +15,12 @@ fn defaults_follow_from_the_scene() {
     assert_eq!(plain.sampling.samples(), 16);
     assert_eq!(plain.settings.bounces, 8);
     let layers = Material::from(PrincipledMaterial::default());
-    let render_defaults =
-        RenderDefaults { size: Some((64, 32)), samples: None, bounces: Some(3), crop: Some((1, 2, 3, 4)) };
+    let render_defaults = RenderDefaults {
+        size: Some((64, 32)),
+        bounces: Some(3),
+        crop: Some((1, 2, 3, 4)),
+        ..RenderDefaults::default()
+    };
     let materials = vec![Spanned { value: layers, span: Default::default() }];
     let scene = Scene { materials, render_defaults, ..Scene::default() };
     let physical = job(&scene);

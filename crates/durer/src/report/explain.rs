@@ -74,7 +74,7 @@ fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &SceneN
         json["origins"] = lines.into();
     }
     let at = match &node.kind {
-        TermKind::Ray { ray, hit: Some(hit), .. } => (ray.dir, hit.n),
+        TermKind::Ray { ray, hit, .. } => (ray.dir, hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n)),
         _ => at,
     };
     for (i, term) in node.terms.iter().enumerate() {

@@ -8,10 +8,10 @@ use crate::world::{Geometry, Material, Object, Phong, World};
 use durer_scene::describe::DescribedKind;
 use durer_scene::material::Pattern as _;
 use durer_scene::material::PatternMaterial;
-use durer_scene::math::Vec3;
+use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::{Material as Written, Scene};
 use durer_scene::shape::Primitive;
-use durer_scene::texture::Texture;
+use durer_scene::texture::{CubeMap, Texture};
 use glam::DVec3;
 
 /// Returns lines of text that derive the numbers in a term of a trace. `dir` is the direction of
@@ -22,6 +22,7 @@ pub fn derivations(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3
         TermKind::Secondary { here, there, fresnel, total } if here != there => {
             of_refraction(f64::from(*here), f64::from(*there), *fresnel, *total, dir, n)
         }
+        TermKind::Sky => of_sky(dir, scene, world),
         _ => Vec::new(),
     }
 }
@@ -164,24 +165,29 @@ fn of_texture(hit: &HitRecord, material: u32, phong: &Phong, scene: &Scene, worl
         Some(Written::Principled(own)) => own.base_color_texture.as_ref(),
         _ => None,
     };
-    let Some(file) = file else { return Vec::new() };
-    let (width, height) = texture.size();
-    let place = (uv.x * width as f32, (1.0 - uv.y) * height as f32);
-    let mut lines = vec![format!(
-        "texture `{}` of {width} x {height} texels at uv ({}, {}): {} to the right, {} down: {}",
-        file.path,
-        number(uv.x),
-        number(uv.y),
-        number(place.0),
-        number(place.1),
-        rgb(texture.at(uv))
-    )];
-    lines.extend(texels(texture, uv));
-    lines
+    file.map_or(Vec::new(), |file| texels(&format!("texture `{}`", file.path), texture, uv))
 }
 
-/// Describes the texels of a filtered texture lookup and their weights.
-fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
+/// Describes the lookup of the cube map that gives the colour of the sky.
+fn of_sky(dir: Vec3, scene: &Scene, world: &World) -> Vec<String> {
+    let (Some(map), Some(folder), None) = (world.cube_map(), &scene.background.cube_map, world.environment()) else {
+        return Vec::new();
+    };
+    let (face, uv) = map.face(dir);
+    texels(&format!("face `{}` of the cube map `{}`", CubeMap::FACES[face], folder.path), &map.faces[face], uv)
+}
+
+/// Describes a filtered texture lookup, with the texels and their weights.
+fn texels(name: &str, texture: &Texture, uv: Vec2) -> Vec<String> {
+    let (width, height) = texture.size();
+    let first = format!(
+        "{name} of {width} x {height} texels at uv ({}, {}): {} to the right, {} down: {}",
+        number(uv.x),
+        number(uv.y),
+        number(uv.x * width as f32),
+        number((1.0 - uv.y) * height as f32),
+        rgb(texture.at(uv))
+    );
     let line = |tap: &durer_scene::texture::Tap| {
         let (x, y) = tap.texel;
         let stored = tap.bytes.map_or(String::new(), |bytes| {
@@ -192,7 +198,7 @@ fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
         });
         format!("{} · texel ({x}, {y}): {stored}{}", number(tap.weight), rgb(tap.color))
     };
-    texture.taps(uv).iter().map(line).collect()
+    std::iter::once(first).chain(texture.taps(uv).iter().map(line)).collect()
 }
 
 /// Derives the direction of the refracted ray and the Fresnel reflectance.

@@ -360,8 +360,10 @@ fn node_lines(
                 number(*nm)
             )
         }
-        TermKind::Sky if node.throughput.is_some() => format!("background: {value}"),
-        TermKind::Sky => "background".into(),
+        TermKind::Sky => {
+            more.extend(names.origins(node, at.dir, at.n));
+            if node.throughput.is_some() { format!("background: {value}") } else { "background".into() }
+        }
         TermKind::Emission { mis } => format!("emission: {value}{}", weight_text(*mis)),
         TermKind::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
             more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));

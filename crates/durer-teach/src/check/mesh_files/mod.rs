@@ -11,7 +11,7 @@ use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::camera::Projection;
 use durer_scene::describe::FileName;
 use durer_scene::math::Aabb;
-use durer_scene::scene::{Group, Object, ObjectKind};
+use durer_scene::scene::{Object, ObjectKind, Scene};
 use durer_scene::shape::MeshData;
 use normals::InvalidNormals;
 use topology::Topology;
@@ -40,11 +40,7 @@ pub(in crate::check) struct MeshFile<'s> {
 
 /// Returns all mesh files of a scene.
 pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
-    let mut uses = Uses::new();
-    if let Some(root) = &grid.input.scene.root {
-        collect(root, &mut uses);
-    }
-    uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
+    uses(grid.input.scene).into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
 }
 
 /// Maximum number of triangles for which a mesh in a model is checked.
@@ -52,36 +48,27 @@ const MAX_MODEL: usize = 300_000;
 
 /// Returns the meshes of a scene that was read from a model file.
 pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
-    let mut uses = Uses::new();
-    if let Some(root) = &grid.input.scene.root {
-        collect(root, &mut uses);
-    }
     let meshes = &grid.input.scene.assets.meshes;
     let own = |(name, objects): (&'s FileName, Vec<&'s Object>)| {
         let data = meshes.get(&name.path).filter(|data| data.triangles.len() <= MAX_MODEL)?;
         Some(MeshFile::new(grid, name, u32::MAX, objects, MeshData::clone(data)))
     };
-    uses.into_iter().filter_map(own).collect()
+    uses(grid.input.scene).into_iter().filter_map(own).collect()
 }
 
 /// Mesh files of a scene, each with the objects that use it.
 type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
 
-fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
-    group.objects.iter().for_each(|object| collect_object(object, uses));
-}
-
-fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
-    match &object.node {
-        ObjectKind::Group(group) => collect(group, uses),
-        ObjectKind::Transform(_, inner) => collect_object(inner, uses),
-        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
-        ObjectKind::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
+fn uses(scene: &Scene) -> Uses<'_> {
+    let mut uses = Uses::new();
+    for object in scene.objects() {
+        let ObjectKind::Mesh(mesh) = &object.node else { continue };
+        match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
             Some((_, objects)) => objects.push(object),
             None => uses.push((&mesh.obj_file, vec![object])),
-        },
-        ObjectKind::Primitive(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {}
+        }
     }
+    uses
 }
 
 fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {

@@ -1,7 +1,7 @@
 //! Mistakes of mirrors and glass.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::bugs::{Fresnel, Glass, Mirror};
+use crate::mistakes::bugs::{Fresnel, Glass, Mirror, TotalReflection};
 use durer_scene::math::Color;
 
 /// Common mistakes in reflection and refraction.
@@ -394,5 +394,32 @@ pub(super) const MISTAKES: &[Mistake] = &[
             v.bugs.shadows.epsilon = Some(-1e-3);
             v.bugs.bounces.epsilon = Some(-1e-3);
         },
+    ),
+    row(
+        "total-reflection",
+        "refraction",
+        "in total internal reflection {a negative number below the root counts as 0|the mirrored light of glass is not \
+         increased|the transmitted ray is mirrored|the transmitted ray is not bent|the root of a negative number makes \
+         pixels black}",
+        "k = 1 - eta^2 (1 - c^2); if (k < 0) the mirrored ray gets all light",
+        "if (k < 0) {k = 0|only leave out the transmitted ray|T = R|T = d|(nothing): sqrt(k) is NaN}",
+        |v, how| {
+            v.bugs.bounces.total = [
+                TotalReflection::Clamped,
+                TotalReflection::Lost,
+                TotalReflection::Mirrored,
+                TotalReflection::Straight,
+                TotalReflection::NotANumber,
+            ][(how as usize).min(4)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0])),
+    row(
+        "glass-in-front",
+        "epsilon",
+        "transmitted rays start in front of the surface and enter it again: the offset is on the wrong side",
+        "Ray(p - epsilon * N, T)",
+        "Ray(p + epsilon * N, T)",
+        |v, _| v.bugs.bounces.glass_in_front = true,
     ),
 ];

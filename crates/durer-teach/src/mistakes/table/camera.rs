@@ -43,6 +43,33 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.toggle(Quirk::BorderPixels),
     ),
     row(
+        "border-of-one-axis",
+        "rays",
+        "the first and last {columns|rows} are centered on the picture's border instead of inside it",
+        "x = (i + 0.5) / n, y = (j + 0.5) / m",
+        "{x = i / (n - 1)|y = j / (m - 1)}",
+        |v, axis| {
+            if !v.world.rules().has(Quirk::BorderPixels) {
+                v.camera_bugs.border_axes[usize::from(axis > 0.0)] = true;
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "pixel-center-over-n-less-one",
+        "rays",
+        "pixel centres are divided by the size minus 1",
+        "x = (i + 0.5) / n, y = (j + 0.5) / m",
+        "x = (i + 0.5) / (n - 1), y = (j + 0.5) / (m - {1)|1), counted from the top}",
+        |v, top| {
+            if !v.world.rules().has(Quirk::BorderPixels) {
+                v.camera_bugs.border_axes = [true; 2];
+                v.camera_bugs.sample_position = Vec2::new(1.0, if top == 0.0 { 0.0 } else { 1.0 });
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
         "stretch",
         "rays",
         "a non-square picture is stretched instead of cropped, or the reverse",

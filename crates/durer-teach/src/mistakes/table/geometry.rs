@@ -10,6 +10,10 @@ use durer_scene::shape::Primitive;
 use glam::DAffine3;
 use std::sync::Arc;
 
+/// Values of mistakes in normals. With 1, mirrors and glass use the wrong normal even where it points
+/// away from the ray.
+const ONE_NORMAL: Values = Values::Only(&[0.0, 1.0]);
+
 /// Common mistakes in intersections, normals and transforms.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -18,32 +22,45 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "normals of transformed objects are not transformed",
         "N = normalize(M^-T n)",
         "N = n",
-        |v, _| v.bugs.normals = Normals::Local,
-    ),
+        |v, only| (v.bugs.normals, v.bugs.one_normal) = (Normals::Local, only > 0.0),
+    )
+    .with(ONE_NORMAL),
     row(
         "normals-moved",
         "transforms",
         "normals of transformed objects are transformed by M instead of its inverse transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M n)",
-        |v, _| v.world.edit().shading.moved_normals = true,
-    ),
+        |v, only| (v.world.edit().shading.moved_normals, v.bugs.one_normal) = (true, only > 0.0),
+    )
+    .with(ONE_NORMAL),
     row(
         "normals-inverse",
         "transforms",
         "normals of transformed objects are transformed by the inverse of M without the transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M^-1 n)",
-        |v, _| v.bugs.normals = Normals::ByInverse,
-    ),
+        |v, only| (v.bugs.normals, v.bugs.one_normal) = (Normals::ByInverse, only > 0.0),
+    )
+    .with(ONE_NORMAL),
+    row(
+        "normals-transposed",
+        "transforms",
+        "normals of transformed objects are transformed by the transpose of M without the inverse",
+        "N = normalize(M^-T n)",
+        "N = normalize(M^T n)",
+        |v, only| (v.bugs.normals, v.bugs.one_normal) = (Normals::Transposed, only > 0.0),
+    )
+    .with(ONE_NORMAL),
     row(
         "normals-long",
         "transforms",
-        "normals of transformed objects are not normalised",
+        "normals of transformed objects are {not normalised|transformed by M and not normalised}",
         "N = normalize(M^-T n)",
-        "N = M^-T n",
-        |v, _| v.bugs.normals = Normals::Long,
-    ),
+        "N = {M^-T n|M n}",
+        |v, moved| v.bugs.normals = if moved == 0.0 { Normals::Long } else { Normals::LongMoved },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "normals-mixed-long",
         "normals",

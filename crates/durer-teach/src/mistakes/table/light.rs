@@ -210,6 +210,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     ),
     row(
+        "falloff-of-one-term",
+        "diffuse",
+        "{the diffuse term does|highlights do} not fade with distance",
+        "I = color / (a0 + a1 d + a2 d^2), for both terms",
+        "{color += kd * max(0, N.L) * color of the light|color += ks * pow(base, s) * color of the light}",
+        |v, highlights| v.bugs.lights.unfaded = Some(highlights > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
         "falloff-linear",
         "diffuse",
         "light fades with the distance instead of its square",

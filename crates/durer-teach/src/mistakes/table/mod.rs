@@ -7,7 +7,9 @@ mod geometry;
 mod highlights;
 mod light;
 mod output;
+mod patterns;
 mod shadows;
+mod textures;
 
 use super::SceneVariant;
 use super::variant::three_factors;
@@ -61,12 +63,14 @@ impl Values {
 }
 
 /// The mistakes of Whitted's method, grouped by family.
-pub const MISTAKES: [&[Mistake]; 7] = [
+pub const MISTAKES: [&[Mistake]; 9] = [
     light::MISTAKES,
     highlights::MISTAKES,
     shadows::MISTAKES,
     bounces::MISTAKES,
     geometry::MISTAKES,
+    textures::MISTAKES,
+    patterns::MISTAKES,
     camera::MISTAKES,
     output::MISTAKES,
 ];

@@ -2,6 +2,7 @@
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{ShadowDirection, ShadowRayEnd};
+use durer_scene::dialect::Quirk;
 
 /// Common mistakes in shadow rays.
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -110,6 +111,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "occluded by any hit",
         "occluded by hits that are not transparent",
         |v, _| v.bugs.shadows.no_glass = true,
+    ),
+    row(
+        "shadow-fronts",
+        "shadows",
+        "surfaces that face away from the light block it although they should not, or the reverse",
+        "as in the scene's dialect: blocked by any hit, or only if dot(N, L) <= 0 at the nearest",
+        "the other",
+        |v, _| v.toggle(Quirk::ShadowFronts),
     ),
     row(
         "shadows-inverted",
