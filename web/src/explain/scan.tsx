@@ -10,14 +10,14 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
   const count = scope === "row" ? width : height;
   const [at, setAt] = useState(0);
   const [plays, setPlays] = useState(true);
-  const [rays, setRays] = useState<(CameraRay | null)[]>([]);
+  const [loaded, setLoaded] = useState<{ y: number; rays: (CameraRay | null)[] } | null>(null);
   const y = scope === "row" ? Math.min(store.pixel?.y ?? 0, height - 1) : Math.min(at, height - 1);
 
   useEffect(() => {
     let current = true;
     store.session
       .ask({ kind: "rays", columns: width, rows: height, row: y }, "rays")
-      .then((answer) => current && setRays(answer.rays))
+      .then(({ rays }) => current && setLoaded({ y, rays }))
       .catch(() => {});
     return () => {
       current = false;
@@ -32,8 +32,10 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
     if (at >= count - 1) setPlays(false);
   }, [at, count]);
 
+  // The rays of the previous row are not shown for this one.
+  const rays = loaded?.y === y ? loaded.rays : null;
   const x = scope === "row" ? Math.min(at, width - 1) : width - 1;
-  const ray = rays[scope === "row" ? x : width >> 1] ?? null;
+  const ray = rays?.[scope === "row" ? x : width >> 1] ?? null;
   useEffect(() => {
     store.scan = { x, y, ray };
     store.changed();
@@ -57,7 +59,11 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
         unit={scope === "row" ? "Pixel of the row" : "Row of the image"}
       />
       <p class="sentence" aria-live={plays ? "off" : "polite"}>
-        {scope === "row" ? describePixel(store, x, y, ray) : describeRow(y, rays)}
+        {rays === null
+          ? `row ${y}: …`
+          : scope === "row"
+            ? describePixel(store, x, y, ray)
+            : describeRow(y, rays)}
       </p>
       <p class="closest">closest = {ray ? short(ray.t ?? Number.POSITIVE_INFINITY) : "–"}</p>
       <Code line={scope === "picture" ? 0 : ray === null ? 1 : ray.t === null ? 8 : 2} />

@@ -2,6 +2,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { gestures } from "./gestures";
 import { Overlay } from "./overlay";
 import { PixelNumbers } from "./pixel-numbers";
+import { Under } from "./status";
 import { type Store, useStore } from "./store";
 import { whole, zoomBy } from "./zoom";
 
@@ -86,6 +87,7 @@ export function Picture({ store }: { store: Store }) {
           />
         )}
       </div>
+      <Under store={store} />
       <div class="zoom row" role="group" aria-label="Zoom into the image">
         {zoom.magnification > 1 && (
           <button type="button" class="button" onClick={() => store.setZoom(whole)}>

@@ -32,7 +32,6 @@ export function Status({ store }: { store: Store }) {
       {head.hash === null && !coarse && (
         <progress aria-label="Rendering" value={head.samples} max={head.all_samples} />
       )}
-      <Under store={store} />
       {head.hash && (
         <span class="hash" title={`Hash of the image, as durer render --hash prints it: ${head.hash}`}>
           {head.hash.slice(0, 16)}
@@ -43,7 +42,7 @@ export function Status({ store }: { store: Store }) {
 }
 
 /** Shows the pixel below the pointer and its 8-bit values. */
-function Under({ store }: { store: Store }) {
+export function Under({ store }: { store: Store }) {
   const { hoveredPixel: under, head, pixels } = store;
   if (!under || !head || !pixels) return null;
   const [left, top, columns, rows] = head.region;
@@ -52,10 +51,10 @@ function Under({ store }: { store: Store }) {
   const at = 4 * (y * head.width + x);
   const inside = x >= 0 && x < head.width && y >= 0 && y < head.height;
   return (
-    <span class="under">
+    <output class="under">
       {under.join(", ")}
       {inside && ` · ${[...pixels.slice(at, at + 3)].join(" ")}`}
-    </span>
+    </output>
   );
 }
 

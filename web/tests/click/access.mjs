@@ -1,7 +1,7 @@
 /** Names and contrast, by axe. */
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { finished, narrow, open, scenes, test, topics, wide } from "./harness.mjs";
+import { narrow, open, scenes, shown, test, topics, wide } from "./harness.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -53,7 +53,7 @@ for (const [width, size] of [
       for (const [name, reach] of Object.entries(screens)) {
         await page.goto("about:blank");
         await open(page);
-        await finished(page);
+        await shown(page);
         await reach(page);
         await check(page).catch((error) => {
           throw new Error(`${name}: ${error.message}`);

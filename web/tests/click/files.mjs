@@ -1,10 +1,10 @@
 /** Links, examples, models, and times without a network. */
-import { finished, open, scenes, shot, test, wide } from "./harness.mjs";
+import { finished, open, scenes, shot, shown, test, wide } from "./harness.mjs";
 
 await test("a link holds the scene", wide, async (page) => {
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await open(page);
-  await finished(page);
+  await shown(page);
   const text = await page.locator(".cm-content").textContent();
   await page.getByRole("button", { name: "Copy link" }).click();
   await page.getByRole("button", { name: "Link copied" }).waitFor();
@@ -16,12 +16,12 @@ await test("a link holds the scene", wide, async (page) => {
 
 await test("an example, a term, its line and its numbers", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.getByLabel("Examples").selectOption("sphere.txt");
   await page.waitForFunction(() =>
     document.querySelector(".cm-content")?.textContent?.includes("first picture"),
   );
-  await finished(page);
+  await shown(page);
   const box = await page.locator(".picture canvas").boundingBox();
   await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
   const term = page.locator(".tree .title").first();
@@ -39,7 +39,7 @@ await test("an example, a term, its line and its numbers", wide, async (page) =>
 
 await test("a model's material is changed, and it becomes a text", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
   await page.waitForSelector(".materials li");
   await page.locator(".materials button").first().click();
@@ -61,7 +61,7 @@ await test("a model's material is changed, and it becomes a text", wide, async (
 
 await test("a model is opened and gone around in", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
   await page.waitForSelector(".things li");
   await page.waitForFunction(() =>

@@ -42,6 +42,9 @@ export const wide = { viewport: { width: 1440, height: 900 } };
 export const middle = { viewport: { width: 900, height: 1100 } };
 export const narrow = { viewport: { width: 400, height: 820 }, hasTouch: true };
 export const finished = (page) => page.waitForSelector(".status .hash");
+/** Waits for the first image in full size, which need not be finished. */
+export const shown = (page) =>
+  page.waitForFunction(() => / of \d+ samples/.test(document.querySelector(".status")?.textContent));
 export const shot = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
 
 export async function open(page, hash = "#/viewer") {

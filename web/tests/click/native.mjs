@@ -4,7 +4,7 @@ import { copyFileSync, existsSync, mkdtempSync, readFileSync, writeFileSync } fr
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
-import { finished, open, scenes, test, wide } from "./harness.mjs";
+import { open, scenes, shown, test, wide } from "./harness.mjs";
 
 const root = new URL("../../../", import.meta.url).pathname;
 const durer = process.env.DURER ?? join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "debug/durer");
@@ -28,12 +28,12 @@ const equal = (a, b) => a.every((x, i) => Math.abs(x - b[i]) <= 6e-4 * Math.abs(
 if (present) {
   await test("a pixel has the numbers of durer explain", wide, async (page) => {
     await open(page);
-    await finished(page);
+    await shown(page);
     await page.getByLabel("Examples").selectOption("sphere.txt");
     await page.waitForFunction(() =>
       /first picture/.test(document.querySelector(".cm-content")?.textContent),
     );
-    await finished(page);
+    await shown(page);
     const box = await page.locator(".picture .frame").boundingBox();
     await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
     await page.waitForSelector(".tree .term");
@@ -82,7 +82,7 @@ if (present) {
         .next()
         .then(({ value }) => [value]);
       await page.goto(address);
-      await finished(page);
+      await shown(page);
       const type = async (text) => {
         await page.locator(".cm-content").click();
         await page.keyboard.press("Control+End");

@@ -1,5 +1,5 @@
 /** Image, text, explanation and settings. */
-import { finished, middle, narrow, open, scenes, shot, test, wide } from "./harness.mjs";
+import { finished, middle, narrow, open, scenes, shot, shown, test, wide } from "./harness.mjs";
 
 for (const [width, size] of [
   ["wide", wide],
@@ -9,7 +9,7 @@ for (const [width, size] of [
   for (const colorScheme of ["light", "dark"]) {
     await test(`viewer ${width} ${colorScheme}`, { ...size, colorScheme }, async (page) => {
       await open(page);
-      await finished(page);
+      await shown(page);
       const box = await page.locator(".picture canvas").boundingBox();
       await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
       await page.waitForSelector(".tree .term");
@@ -37,7 +37,7 @@ await test("orbit makes coarse pictures and settles", wide, async (page) => {
 
 await test("an error is underlined and mended", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   const editor = page.locator(".cm-content");
   await editor.click();
   await page.keyboard.press("Control+End");
@@ -51,7 +51,7 @@ await test("an error is underlined and mended", wide, async (page) => {
 
 await test("step by step", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   const box = await page.locator(".picture canvas").boundingBox();
   await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
   await page.getByRole("tab", { name: "Step by step" }).click();
@@ -62,7 +62,7 @@ await test("step by step", wide, async (page) => {
 
 await test("a row and the entire image, step by step", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   const box = await page.locator(".picture canvas").boundingBox();
   await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
   await page.getByRole("tab", { name: "Step by step" }).click();
@@ -117,7 +117,7 @@ await test("the picture is seen down to its pixels and their numbers", wide, asy
 
 await test("boxes of the tree in space", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
   await page.waitForSelector(".things li");
   await page.getByRole("tab", { name: "Explain" }).first().click();
@@ -151,7 +151,7 @@ await test("denoised, and noise and time are told", wide, async (page) => {
 
 await test("settings", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.getByRole("tab", { name: "Camera and render" }).click();
   await page.getByRole("tab", { name: "Normals", exact: true }).click();
   // The image changes from red, yellow and blue to the colour of upward normals.
@@ -167,7 +167,7 @@ await test("settings", wide, async (page) => {
 
 await test("the camera is written into the text", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   await page.getByRole("tab", { name: "Camera and render" }).click();
   await page.locator(".picture canvas").focus();
   await page.keyboard.press("ArrowLeft");
@@ -180,7 +180,7 @@ await test("the camera is written into the text", wide, async (page) => {
 
 await test("a term, its ray, its line and its object are shown together", wide, async (page) => {
   await open(page);
-  await finished(page);
+  await shown(page);
   const box = await page.locator(".picture canvas").boundingBox();
   await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
   // The text shows the line of the object.

@@ -138,8 +138,8 @@ function ObscuraFigure() {
                   at={point}
                   color="var(--ray-scattered)"
                   label="The point in the garden"
-                  plane={[0, 0, 1]}
-                  move={([x, y]) => setPoint([limit(x, 3), limit(y, 1.6), point[2]])}
+                  plane={[1, 0, 0]}
+                  move={([x, y, z]) => setPoint([x, limit(y, 1.6), Math.max(-5.6, Math.min(-1, z))])}
                 />
               </>
             )}
