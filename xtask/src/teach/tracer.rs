@@ -235,7 +235,6 @@ impl<'s> Tracer<'s> {
             material = scene.materials[(scene.objects[hit.object].material + 1) % scene.materials.len()];
         }
         let p = o + d * hit.t;
-        let own = material.kd;
         material = self.colored(material, p, self.places[hit.object].1.point(p), hit.uv);
         let one = self.is("normals-inverse") || self.is("normals-transposed") || self.is("normals-moved");
         let side = if matches!(scene.year, Year::Durer) && !one { hit.geo } else { hit.n };
@@ -246,14 +245,12 @@ impl<'s> Tracer<'s> {
             n = -n;
         }
         let mut color = Vec3::ZERO;
-        // In 2012, textures do not affect the ambient light.
-        let ambient_kd = if scene.year == Year::F12a4 && material.textured { own } else { material.kd };
         let ambient = match () {
             () if self.is("no-ambient") => Vec3::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
-            () if self.is("x-ambient-brighter") => scene.ambient * ambient_kd * 1.6,
-            () if self.is("ambient-each-light") => scene.ambient * ambient_kd * scene.lights.len() as f64,
-            () => scene.ambient * ambient_kd,
+            () if self.is("x-ambient-brighter") => scene.ambient * material.kd * 1.6,
+            () if self.is("ambient-each-light") => scene.ambient * material.kd * scene.lights.len() as f64,
+            () => scene.ambient * material.kd,
         };
         if !(scene.year == Year::F04 && back && !faced) {
             color = ambient;
