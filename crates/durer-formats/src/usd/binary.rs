@@ -2,8 +2,8 @@
 //!
 //! Source: *OpenUSD specification*, "USDC file format", versions 0.4 to 0.13.
 
-use super::binary_values::{Cursor, Decoded};
-use super::codec::{decompress, integers};
+use super::binary_values::{Cursor, Decoded, Tables};
+use super::codec::decompress;
 use super::layer::{Layer, PrimSpec, Property, Specifier, Value, child_path};
 use super::time::SampleTime;
 use crate::growth::ResourceLimits;
@@ -42,18 +42,6 @@ const PRIM_FIELDS: [&str; 12] = [
     "active",
     "instanceable",
 ];
-
-/// Tables of a binary file.
-pub(super) struct Tables<'a> {
-    pub bytes: &'a [u8],
-    pub version: u8,
-    pub tokens: Vec<String>,
-    /// Token of each string.
-    pub strings: Vec<u32>,
-    pub paths: Vec<String>,
-    /// Limit on the memory of decoded values.
-    pub limits: &'a ResourceLimits,
-}
 
 /// Reads a binary file. `time` selects the samples of attributes that change over time.
 pub(super) fn read(
@@ -203,25 +191,6 @@ fn paths(at: &mut Cursor, tables: &Tables) -> Result<Vec<String>, String> {
     Ok(paths)
 }
 
-impl Tables<'_> {
-    /// Returns a token by its index.
-    pub fn token(&self, index: i32) -> Result<&str, String> {
-        let token = usize::try_from(index).ok().and_then(|index| self.tokens.get(index));
-        token.map(String::as_str).ok_or_else(|| "a token is invalid".into())
-    }
-
-    /// Returns a string by its index.
-    pub fn string(&self, index: u32) -> Result<&str, String> {
-        let token = self.strings.get(index as usize).ok_or("a string is invalid")?;
-        self.token(*token as i32)
-    }
-
-    /// Returns a path by its index.
-    pub fn path(&self, index: u32) -> Result<&str, String> {
-        self.paths.get(index as usize).map(String::as_str).ok_or_else(|| "a path is invalid".into())
-    }
-}
-
 /// Collects the specs of a file as a layer.
 struct Builder {
     layer: Layer,
@@ -327,13 +296,5 @@ impl Builder {
             _ => {}
         }
         Ok(())
-    }
-}
-
-impl Cursor<'_> {
-    /// Reads compressed integers, which follow their length in bytes.
-    pub fn compressed_integers(&mut self, count: usize) -> Result<Vec<i32>, String> {
-        let data = self.sized()?;
-        integers(data, count)
     }
 }

@@ -4,15 +4,27 @@
 //! itself (bit 62), or compressed (bit 61); its type (bits 48 to 55); and the value or its offset
 //! (bits 0 to 47).
 
-use super::binary::Tables;
 use super::codec::{BROKEN, MIN_COMPRESSED, integers, long_integers};
 use super::layer::{ListEdit, Reference, Value};
 use super::time::SampleTime;
+use crate::growth::ResourceLimits;
 use durer_image::f32_from_half;
 use std::collections::BTreeMap;
 
 /// Maximum nesting depth of dictionaries.
 const MAX_DEPTH: u32 = 32;
+
+/// Tables of a binary file.
+pub(super) struct Tables<'a> {
+    pub bytes: &'a [u8],
+    pub version: u8,
+    pub tokens: Vec<String>,
+    /// Token of each string.
+    pub strings: Vec<u32>,
+    pub paths: Vec<String>,
+    /// Limit on the memory of decoded values.
+    pub limits: &'a ResourceLimits,
+}
 
 /// Position in a file from which numbers are read.
 #[derive(Clone, Copy)]
@@ -90,6 +102,12 @@ impl<'a> Cursor<'a> {
     pub fn sized(&mut self) -> Result<&'a [u8], String> {
         let length = usize::try_from(self.u64()?).unwrap_or(usize::MAX);
         self.take(length)
+    }
+
+    /// Reads compressed integers, which follow their length in bytes.
+    pub fn compressed_integers(&mut self, count: usize) -> Result<Vec<i32>, String> {
+        let data = self.sized()?;
+        integers(data, count)
     }
 
     /// Moves to the offset, relative to here, that is stored here.
@@ -366,6 +384,25 @@ impl<'a> Tables<'a> {
         let path = at.u32()?;
         let prim = self.path(path).unwrap_or_default().to_string();
         Ok(Reference { asset, prim: if prim == "/" { String::new() } else { prim } })
+    }
+}
+
+impl Tables<'_> {
+    /// Returns a token by its index.
+    pub fn token(&self, index: i32) -> Result<&str, String> {
+        let token = usize::try_from(index).ok().and_then(|index| self.tokens.get(index));
+        token.map(String::as_str).ok_or_else(|| "a token is invalid".into())
+    }
+
+    /// Returns a string by its index.
+    pub fn string(&self, index: u32) -> Result<&str, String> {
+        let token = self.strings.get(index as usize).ok_or("a string is invalid")?;
+        self.token(*token as i32)
+    }
+
+    /// Returns a path by its index.
+    pub fn path(&self, index: u32) -> Result<&str, String> {
+        self.paths.get(index as usize).map(String::as_str).ok_or_else(|| "a path is invalid".into())
     }
 }
 

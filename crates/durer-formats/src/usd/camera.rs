@@ -3,30 +3,12 @@
 //! Source: *OpenUSD documentation*, `UsdGeomCamera`. Apertures and focal lengths are in tenths of a
 //! world unit.
 
+use super::reader::{CameraData, Reader};
 use super::stage::Prim;
-use super::traverse::Reader;
-use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_diag::{Diagnostic, did_you_mean};
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use durer_scene::math::fp;
 use glam::{DAffine3, DVec3};
-
-/// Camera of the scene. The field of view follows from the shape of the picture.
-pub(super) struct CameraData {
-    name: String,
-    path: String,
-    at: Span,
-    to_world: DAffine3,
-    is_orthographic: bool,
-    /// Width and height of the film, in world units.
-    film: [f64; 2],
-    /// Offset of the film, in world units.
-    offset: [f64; 2],
-    focal_length: f64,
-    f_stop: f64,
-    focus_distance: f64,
-    /// Near and far distance, if the file states them.
-    clipping: Option<[f64; 2]>,
-}
 
 impl Reader<'_, '_> {
     /// Remembers a camera.

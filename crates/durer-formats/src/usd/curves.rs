@@ -2,8 +2,8 @@
 //!
 //! Source: *OpenUSD documentation*, `UsdGeomBasisCurves`.
 
+use super::reader::{Inherited, Reader};
 use super::stage::Prim;
-use super::traverse::{Inherited, Reader};
 use durer_scene::scene::Object;
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::tube::{Piece, add_tube, from_b_spline, sample_curve, straight, with_round_caps};

@@ -1,8 +1,8 @@
 //! Point instancers: many copies of a few prototypes.
 
 use super::layer::Value;
+use super::reader::{Inherited, Reader};
 use super::stage::Prim;
-use super::traverse::{Inherited, Reader};
 use durer_scene::scene::{Group, Object, ObjectKind};
 use glam::{DAffine3, DQuat, DVec3};
 

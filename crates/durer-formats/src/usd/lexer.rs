@@ -1,8 +1,13 @@
 //! Tokens of USD text files.
 
-use super::text::SyntaxError;
 use durer_diag::Span;
 use std::fmt;
+
+/// Error in a text file, with its position.
+pub(super) struct SyntaxError {
+    pub at: Span,
+    pub message: String,
+}
 
 /// Token of a text file. Names can contain `:` and `.`.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,14 +4,12 @@
 //! nits, divided by the area of the light if `normalize` is set.
 
 use super::files::joined;
+use super::reader::{Emission, Reader};
 use super::stage::Prim;
-use super::traverse::Reader;
 use crate::panorama;
 use crate::pictures::{Pictures, asset, picture_error};
-use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
-use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{Object, ObjectKind, PictureBytes, Spanned, TextureImage};
 use durer_scene::shape::{Cylinder, Disc, Rectangle, Sphere};
@@ -21,32 +19,6 @@ use std::f64::consts::PI;
 
 /// Height in pixels of an environment map that is resampled.
 const MAX_ROWS: u32 = 2048;
-
-/// Radiance of a light surface.
-#[derive(Clone, Debug)]
-pub(super) struct Emission {
-    radiance: Vec3,
-    /// Colour temperature, such as `6500K`.
-    spectrum: Option<String>,
-    /// Picture that multiplies the radiance.
-    picture: Option<FileName>,
-}
-
-impl Emission {
-    /// Returns a black material with this emission.
-    pub fn material(&self) -> PrincipledMaterial {
-        let named = |path: &String| FileName { path: path.clone(), span: Span::default() };
-        PrincipledMaterial {
-            base_color: Vec3::ZERO,
-            specular_weight: 0.0,
-            emission_luminance: 1.0,
-            emission_color: self.radiance,
-            emission_spectrum: self.spectrum.as_ref().map(named),
-            emission_texture: self.picture.clone(),
-            ..PrincipledMaterial::default()
-        }
-    }
-}
 
 impl Reader<'_, '_> {
     /// Adds a light.

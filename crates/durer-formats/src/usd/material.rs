@@ -3,27 +3,21 @@
 //! Source: *UsdPreviewSurface Specification*, version 2.6.
 
 use super::primvar::{Interpolation, Primvar};
+use super::reader::{BoundMaterial, Reader};
 use super::shader::{self, Input, Texture, input, shader_of};
 use super::stage::Prim;
-use super::traverse::Reader;
 use crate::pictures::asset;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Material, Spanned, TextureImage};
+use durer_scene::scene::TextureImage;
 use durer_scene::texture::{Channel, Mapping};
 use std::rc::Rc;
 
 /// Reflectance at normal incidence of a surface without a colour of its own: an index of 1.5.
 const USUAL_REFLECTANCE: f32 = 0.04;
-
-/// Material of the scene, with the names of the texture coordinates that its pictures use.
-pub(super) struct BoundMaterial {
-    pub number: u32,
-    pub uvs: Vec<String>,
-}
 
 /// Material that is being read.
 struct Surface {
@@ -32,12 +26,6 @@ struct Surface {
 }
 
 impl Reader<'_, '_> {
-    /// Adds a material to the scene and returns its number.
-    pub fn add_material(&mut self, material: PrincipledMaterial, at: Span) -> u32 {
-        self.scene.materials.push(Spanned { value: Material::Principled(Box::new(material)), span: at });
-        self.scene.materials.len() as u32 - 1
-    }
-
     /// Returns the material for a shape without subsets.
     pub fn material_of(&mut self, prim: &Prim, bound: Option<&str>, at: Span) -> Option<u32> {
         match bound.and_then(|path| self.material(path)) {

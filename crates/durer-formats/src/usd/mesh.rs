@@ -4,9 +4,9 @@
 
 use super::layer::Value;
 use super::primvar::{Interpolation, Primvar};
+use super::reader::{Inherited, Reader};
 use super::skel::Pose;
 use super::stage::Prim;
-use super::traverse::{Inherited, Reader};
 use crate::polygon::Triangulator;
 use crate::smooth::smoothed;
 use durer_scene::math::{Vec2, Vec3};

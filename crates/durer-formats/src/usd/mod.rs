@@ -17,6 +17,7 @@ mod light;
 mod material;
 mod mesh;
 mod primvar;
+mod reader;
 mod shader;
 mod shape;
 mod skel;
@@ -37,9 +38,9 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Background, Group, Scene};
 use files::LayerFiles;
 use layer::{Layer, Value};
+use reader::{Inherited, Reader};
 use stage::Stage;
 use time::SampleTime;
-use traverse::{Inherited, Reader};
 
 /// Entry for USD in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {

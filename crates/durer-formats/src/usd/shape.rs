@@ -2,8 +2,8 @@
 //!
 //! Source: *OpenUSD documentation*, UsdGeom.
 
+use super::reader::{Inherited, Reader};
 use super::stage::Prim;
-use super::traverse::{Inherited, Reader};
 use crate::sticks::ball;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Group, Object, ObjectKind};

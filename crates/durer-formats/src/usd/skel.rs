@@ -5,9 +5,9 @@
 //! skeleton. Dual quaternions and blend shapes have no counterpart.
 
 use super::layer::Value;
+use super::reader::Inherited;
 use super::stage::{Prim, Stage};
 use super::transform::local_transform;
-use super::traverse::Inherited;
 use durer_scene::math::Vec3;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 

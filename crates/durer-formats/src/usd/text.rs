@@ -3,18 +3,12 @@
 //! Source: *OpenUSD specification*, "USDA file format".
 
 use super::layer::{Layer, PrimSpec, Reference, Specifier, Value, child_path, variant_path};
-use super::lexer::{Lexer, Token};
+use super::lexer::{Lexer, SyntaxError, Token};
 use durer_diag::Span;
 use std::collections::BTreeMap;
 
 /// Maximum nesting depth of prims and of lists.
 const MAX_DEPTH: usize = 128;
-
-/// Error in a text file, with its position.
-pub(super) struct SyntaxError {
-    pub at: Span,
-    pub message: String,
-}
 
 type Parsed<T> = Result<T, SyntaxError>;
 

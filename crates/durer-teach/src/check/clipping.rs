@@ -24,7 +24,9 @@ fn clip_distances(camera: &Camera) -> Option<(Option<f32>, Option<f32>)> {
 pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let Some((near, far)) = clip_distances(world.camera()) else { return Vec::new() };
-    if scene_probe.hits().next().is_some() || scene_probe.visibilities().contains(&Visibility::Visible) {
+    // A plane can extend beyond the clip distances, so only bounded objects count.
+    let mut seen = world.objects().iter().zip(scene_probe.visibilities());
+    if seen.any(|(object, visibility)| object.bounds().is_some() && *visibility == Visibility::Visible) {
         return Vec::new();
     }
     let orthographic = matches!(world.camera(), Camera::Orthographic(_));
@@ -41,6 +43,11 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     // The distances of a plane reach to the horizon, so bounded objects are preferred.
     let any_bounded = free.iter().any(|(_, bounded)| *bounded);
+    let is_empty = scene_probe.hits().next().is_none();
+    if !is_empty && !any_bounded {
+        return Vec::new();
+    }
+    let all = if is_empty { "everything in the picture" } else { "all objects except planes" };
     let depths = || free.iter().filter(|(_, bounded)| *bounded || !any_bounded).map(|(depth, _)| *depth);
     let (least, most) = (depths().fold(f32::INFINITY, f32::min), depths().fold(f32::NEG_INFINITY, f32::max));
     let low = if least > 0.0 { 0.9 * least } else { least - 0.1 * (most - least).max(least.abs()) };
@@ -49,7 +56,7 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     let (message, help, field, edits) = match (near, far) {
         (Some(near), Some(far)) if near > far => {
             let message = format!(
-                "the `near` distance {} is greater than the `far` distance {}, so everything is cut away",
+                "the `near` distance {} is greater than the `far` distance {}, so they cut away {all}",
                 number(near),
                 number(far)
             );
@@ -59,17 +66,17 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
             (message, help, "near", vec![("near", number(low)), ("far", number(high))])
         }
         (_, Some(far)) if far < least => {
-            let message = format!("the `far` distance {} cuts away everything in the picture", number(far));
+            let message = format!("the `far` distance {} cuts away {all}", number(far));
             let help = format!("write `far {}`, or remove `far`", number(1.1 * most));
             (message, help, "far", vec![("far", number(1.1 * most))])
         }
         (Some(near), _) if near > most => {
-            let message = format!("the `near` distance {} cuts away everything in the picture", number(near));
+            let message = format!("the `near` distance {} cuts away {all}", number(near));
             let help = format!("write `near {}`, or remove `near`", number(low));
             (message, help, "near", vec![("near", number(low))])
         }
         _ => {
-            let message = "the clip distances of the camera cut away everything in the picture".to_string();
+            let message = format!("the clip distances of the camera cut away {all}");
             (message, "remove `near` and `far`".to_string(), "near", Vec::new())
         }
     };
@@ -78,7 +85,7 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
         false => format!("the visible objects would be at distances from {} to {}", number(least), number(most)),
     };
     let diagnostic = Diagnostic::warning(message)
-        .effect(format!("the picture shows only the background: {objects} along the camera's axis"))
+        .effect(format!("without the clip distances, {objects} along the camera's axis"))
         .help(help);
     let diagnostic =
         edits.into_iter().fold(diagnostic, |diagnostic, (field, text)| diagnostic.fix_at(place(field), text));
