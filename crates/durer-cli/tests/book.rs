@@ -84,6 +84,15 @@ fn every_command_of_the_book_runs() {
         if commands.iter().any(|command| command.contains("model.glb")) {
             assert!(durer(folder.path(), "convert scene.txt -o model.glb").status.success());
         }
+        if commands.iter().any(|command| command.contains("class.csv")) {
+            for pictures in ["reference", "class/anna"] {
+                std::fs::create_dir_all(folder.path().join(pictures)).unwrap();
+                let line = format!("render scene.txt -o {pictures}/ball.png --size 40x30 --samples 1");
+                assert!(durer(folder.path(), &line).status.success());
+            }
+            let table = "picture,scene,options\nball.png,scene.txt,--samples 1\n";
+            std::fs::write(folder.path().join("class.csv"), table).unwrap();
+        }
         for command in commands {
             count += 1;
             let output = durer(folder.path(), &smaller(&command));
