@@ -59,8 +59,8 @@ pub fn has_styles() -> bool {
     set("NO_COLOR").is_none() && set("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// Replaces characters that could control the terminal by escapes such as `\u{1b}`, because names of
-/// files and texts in files can contain them. Changes of the text's style (`ESC [ ... m`), which
+/// Replaces characters that could control the terminal by escapes such as `\u{1b}`, because names
+/// of files and texts in files can contain them. Changes of the text's style (`ESC [ ... m`), which
 /// this program prints itself, are kept.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(controls_terminal) {

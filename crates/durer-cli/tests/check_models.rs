@@ -179,9 +179,9 @@ fn views_beside_a_radiance_scene_are_offered() {
     ]
     .map(wall)
     .concat();
-    let lamp = "lamp polygon panel\n0\n0\n12  -0.5 0.5 3.9   0.5 0.5 3.9   0.5 -0.5 3.9   -0.5 -0.5 3.9\n";
+    let panel = "lamp polygon panel\n0\n0\n12  -0.5 0.5 3.9   0.5 0.5 3.9   0.5 -0.5 3.9   -0.5 -0.5 3.9\n";
     let materials: String = RADIANCE.lines().take(8).map(|line| format!("{line}\n")).collect();
-    folder.write("room.rad", format!("{materials}{room}{lamp}"));
+    folder.write("room.rad", format!("{materials}{room}{panel}"));
     let before = folder.expect_exit(1, "check room.rad").out;
     assert!(before.contains("black") && !before.contains("--view-file"), "{before}");
     folder.write("inside.vf", "rvu -vtv -vp 0 -3 2 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 60\n");

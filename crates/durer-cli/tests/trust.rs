@@ -306,8 +306,8 @@ fn system_limits_are_named_errors() {
     assert!(output.out.contains("cannot write `o.pfm`: File too large"), "{}", output.out);
     let output = folder.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
     assert_eq!(output.code, Some(0), "{}", output.err);
-    let output = folder.shell(&format!("{work} -o o.png --memory 1"));
-    assert!(output.code == Some(2) && output.err.contains("the limit is 1 byte;"), "{}", output.err);
+    let output = folder.shell(&format!("{work} -o o.png --memory 1000"));
+    assert!(output.code == Some(2) && output.err.contains("the limit is 1000 bytes;"), "{}", output.err);
     for (line, code) in [
         ("$DURER info scene.txt >&-", 1),
         ("$DURER render scene.txt --size 8x8 -o c.png >&-", 1),

@@ -142,9 +142,9 @@ pub struct Stamp {
     pub path: PathBuf,
     /// Time of the last modification, in nanoseconds since 1970.
     pub modified: i128,
-    /// Time of the last change of the content or of the times themselves, in nanoseconds since 1970;
-    /// 0 if the system records none. Programs that copy files can set `modified`, but not this
-    /// time.
+    /// Time of the last change of the content or of the times themselves, in nanoseconds since
+    /// 1970; 0 if the system records none. Programs that copy files can set `modified`, but not
+    /// this time.
     pub changed: i128,
     /// Size in bytes.
     pub size: u64,

@@ -106,8 +106,8 @@ impl Reader<'_, '_> {
         self.number(prim, &format!("inputs:{name}")).or_else(|| self.number(prim, name))
     }
 
-    /// Returns the emission without `normalize`, and the colour temperature; `None` for a light that
-    /// is off.
+    /// Returns the emission without `normalize`, and the colour temperature; `None` for a light
+    /// that is off.
     fn radiance(&self, prim: &Prim, kind: &str) -> Option<(Vec3, Option<String>)> {
         let default = if kind == "DistantLight" { 50_000.0 } else { 1.0 };
         let intensity = self.input(prim, "intensity").unwrap_or(default);

@@ -304,7 +304,7 @@ impl Reader<'_, '_> {
             Some(levels) if levels > 0 => levels,
             _ if corners <= MAX_FACES => 1,
             _ => {
-                let message = "a subdivision surface with so many faces is rendered without subdivision";
+                let message = "a subdivision surface with more than a million corners is rendered without subdivision";
                 self.stage.files.report.unsupported_once(prim.span(), message);
                 0
             }

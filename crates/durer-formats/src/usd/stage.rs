@@ -303,7 +303,8 @@ impl<'a> Stage<'a> {
         stack
     }
 
-    /// Adds a layer and its sublayers to a stack. `chain` contains the names of the layers above it.
+    /// Adds a layer and its sublayers to a stack. `chain` contains the names of the layers above
+    /// it.
     fn add_layers(&self, layer: Rc<Layer>, layers: &mut Vec<Rc<Layer>>, chain: &mut Vec<String>) {
         let at = layer.prims.get("/").map_or(Span::default(), |root| root.span);
         let names = match layer.field("subLayers") {

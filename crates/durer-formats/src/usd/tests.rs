@@ -1,5 +1,5 @@
-//! Tests of the USD reader: composition, geometry, materials, lights and hostile input. The files in
-//! `fuzz/seeds/usd` were written by OpenUSD 26.11.
+//! Tests of the USD reader: composition, geometry, materials, lights and hostile input. The files
+//! in `fuzz/seeds/usd` were written by OpenUSD 26.11.
 
 use crate::testing::{folder, read_in};
 use durer_scene::camera::Camera;
@@ -336,7 +336,8 @@ fn meshes_follow_their_joints() {
         }",
     );
     let mesh = scene.assets.meshes.values().next().unwrap();
-    // The turn about (1, 0, 0) moves (2, 0, 0) to (1, 1, 0), and (0, 0, 2) half of the way to (1, -1, 2).
+    // The turn about (1, 0, 0) moves (2, 0, 0) to (1, 1, 0), and (0, 0, 2) half of the way to
+    // (1, -1, 2).
     let expected = [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.5, -0.5, 2.0)];
     let close = |(a, b): (&Vec3, &Vec3)| (*a - *b).length() < 1e-6;
     assert!(mesh.positions.iter().zip(&expected).all(close), "{:?}", mesh.positions);

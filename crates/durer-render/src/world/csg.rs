@@ -553,8 +553,8 @@ fn order(a: &SurfaceCrossing, b: &SurfaceCrossing) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns an upper bound on the sum of the rounding errors of an object's coordinates in world space and in
-/// object space.
+/// Returns an upper bound on the sum of the rounding errors of an object's coordinates in world
+/// space and in object space.
 fn tolerance_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());

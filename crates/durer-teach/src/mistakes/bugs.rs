@@ -246,7 +246,7 @@ pub enum Glass {
     Unsquared,
 }
 
-/// What a student's tracer does in the case of total internal reflection.
+/// Behaviour of a student's tracer in the case of total internal reflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TotalReflection {
     /// There is no transmitted ray, and glass with a Fresnel term reflects all light, which is

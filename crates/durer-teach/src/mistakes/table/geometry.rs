@@ -10,8 +10,8 @@ use durer_scene::shape::Primitive;
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// Values of mistakes in normals. With 1, mirrors and glass use the wrong normal even where it points
-/// away from the ray.
+/// Values of mistakes in normals. With 1, mirrors and glass use the wrong normal even where it
+/// points away from the ray.
 const ONE_NORMAL: Values = Values::Only(&[0.0, 1.0]);
 
 /// Common mistakes in intersections, normals and transforms.
