@@ -179,7 +179,7 @@ fn views_beside_a_radiance_scene_are_offered() {
     ]
     .map(wall)
     .concat();
-    let panel = "lamp polygon panel\n0\n0\n12  -0.5 0.5 3.9   0.5 0.5 3.9   0.5 -0.5 3.9   -0.5 -0.5 3.9\n";
+    let panel = "lamp polygon panel\n0\n0\n12  -0.5 0.5 3.9   0.5 0.5 3.9   0.5 -0.5 3.9   -0.5 -0.5 3.9\n"; // prose: keep
     let materials: String = RADIANCE.lines().take(8).map(|line| format!("{line}\n")).collect();
     folder.write("room.rad", format!("{materials}{room}{panel}"));
     let before = folder.expect_exit(1, "check room.rad").out;

@@ -42,8 +42,8 @@ pub struct Object {
     pub material: usize,
 }
 
-/// Pattern that mixes two materials of a scene of the judge: a checkerboard, noise by its octaves, or
-/// veins by octaves, frequency and amplitude.
+/// Pattern that mixes two materials of a scene of the judge: a checkerboard, noise by its octaves,
+/// or veins by octaves, frequency and amplitude.
 #[derive(Clone, Copy, Debug)]
 pub enum Pattern {
     Checkerboard,

@@ -1,4 +1,5 @@
-//! Scenes with textures, a sky, patterns, a prism and a mirror box, and the mistakes that they show.
+//! Scenes with textures, a sky, patterns, a prism and a mirror box, and the mistakes that they
+//! show.
 
 use super::{bulb, floor, glossy, matt, moved, octahedron, sphere};
 use crate::teach::scene::{Material, Object, Pattern, Scene, Shape, Transform, Year};
@@ -23,7 +24,7 @@ fn pattern(pattern: Pattern, space: &'static [Transform], of: [usize; 2]) -> Mat
     Material { pattern: Some((pattern, space, of)), ..matt(Vec3::ZERO) }
 }
 
-/// Returns the scenes, which are variants of one with lamps.
+/// Returns the scenes, which are variants of one with lights.
 pub fn scenes(old: &Scene) -> Vec<Scene> {
     let mirror = Material { kr: Vec3(0.7, 0.7, 0.6), ..matt(Vec3(0.1, 0.1, 0.1)) };
     let picture = Material { textured: true, ..glossy(Vec3(0.6, 0.9, 0.5), Vec3(0.3, 0.3, 0.3), 20.0) };
