@@ -269,9 +269,7 @@ pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
 
 fn read_part_of(path: &Path) -> Result<Result<PartialRender, PartError>, Failure> {
     let name = path.display().to_string();
-    let bytes = FolderSource::new(".")
-        .budget(Memory::default().bytes().unwrap_or(u64::MAX))
-        .read_path(path, &name)
-        .map_err(report::unreadable)?;
+    let source = FolderSource::new(".").budget(Memory::default().limit());
+    let bytes = source.read_path(path, &name).map_err(report::unreadable)?;
     Ok(PartialRender::read(&bytes))
 }

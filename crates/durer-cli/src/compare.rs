@@ -54,7 +54,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
     let report = args.report.as_ref().map(|path| registry.register_output("--report", path)).transpose()?;
     let heat_file = args.heat.as_ref().map(|path| registry.register_output("--heat", path)).transpose()?;
-    let memory = args.rendering.reading.memory.bytes().unwrap_or(u64::MAX);
+    let memory = args.rendering.reading.memory.limit();
     let table = args.table.as_deref().map(|path| ClassTable::read(path, memory)).transpose()?;
     args.table.iter().try_for_each(|path| registry.register_input(path))?;
     table.iter().try_for_each(|table| table.check(&comparison.pairs))?;

@@ -19,9 +19,11 @@ mod tests {
 
     #[test]
     fn normal_subnormal_and_infinite_numbers_are_converted() {
-        let numbers = [0x3c00, 0xc000, 0x0001, 0x7bff, 0x7c00, 0x8000].map(f32_from_half);
-        assert_eq!(numbers[..5], [1.0, -2.0, 1.0 / 16_777_216.0, 65504.0, f32::INFINITY]);
-        assert!(numbers[5] == 0.0 && numbers[5].is_sign_negative());
+        /// 2^-24.
+        const LEAST: f32 = 1.0 / 16_777_216.0;
+        let numbers = [0x3c00, 0xc000, 0x0001, 0x03ff, 0x7bff, 0x7c00, 0x8000].map(f32_from_half);
+        assert_eq!(numbers[..6], [1.0, -2.0, LEAST, 1023.0 * LEAST, 65504.0, f32::INFINITY]);
+        assert!(numbers[6] == 0.0 && numbers[6].is_sign_negative());
         assert!(f32_from_half(0x7e00).is_nan());
     }
 }

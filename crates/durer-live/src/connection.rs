@@ -33,7 +33,6 @@ pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
 }
 
 fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
-    stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
     stream.set_write_timeout(Some(REQUEST_TIMEOUT))?;
     let head = match head::read(stream) {

@@ -46,14 +46,9 @@ fn outside(path: &Path, folder: &Path) -> String {
     )
 }
 
-/// Returns the memory in bytes that a photograph may need.
-pub fn memory_limit() -> u64 {
-    Memory::default().bytes().unwrap_or(u64::MAX)
-}
-
 /// Reads a regular file that the source allows, provided it fits into memory.
 fn read_below(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
-    let most = memory_limit().min(FolderSource::DEFAULT_BUDGET);
+    let most = Memory::default().limit().min(FolderSource::DEFAULT_BUDGET);
     let real = source.allowed(path)?;
     source.budget(most).read_path(&real, &path.to_string_lossy())
 }

@@ -1,13 +1,14 @@
 //! Implements `durer photo match`, which finds features in photographs and matches them.
 
 use super::args::MatchArgs;
-use super::inputs::{bytes_below, from_photo_error, memory_limit, name, photographs, with_threads};
+use super::inputs::{bytes_below, from_photo_error, name, photographs, with_threads};
 use crate::failure::Failure;
 use crate::file_registry::FileRegistry;
 use crate::output::save;
 use crate::progress;
 use crate::terminal::print_error_line;
 use crate::terminal::print_line;
+use durer::options::memory::Memory;
 use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 use std::path::Path;
@@ -43,7 +44,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
             // uses all threads.
             let own = Path::new(path.file_name().unwrap_or_default());
             let content = bytes_below(&args.folder, own, &mut FileRegistry::default())?;
-            let photo = photo::read(&name(path), &content, memory_limit()).map_err(from_photo_error)?;
+            let photo = photo::read(&name(path), &content, Memory::default().limit()).map_err(from_photo_error)?;
             doubts.extend(photo.exif.warning.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
             described.push(with_threads(args.run.threads, || describe(&photo, &options))?);
             report(FEATURES * (i + 1) as f64 / paths.len() as f64);

@@ -7,7 +7,7 @@
 //! original method, so that the colours of the stand-ins cancel.
 
 use super::args::PlaceArgs;
-use super::inputs::{bytes, from_photo_error, memory_limit};
+use super::inputs::{bytes, from_photo_error};
 use crate::failure::from_render_error;
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -20,6 +20,7 @@ use durer::film::Filter;
 use durer::film::aov::Aov;
 use durer::image::{Image, Layer, Transfer, decode_srgb};
 use durer::math::Vec3;
+use durer::options::memory::Memory;
 use durer::render::{Control, Job, PixelRect, Sampling, raster, render};
 use durer::scene::{Group, Object, ObjectKind};
 use durer::world::World;
@@ -38,8 +39,8 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let mut registry = FileRegistry::default();
     let format = format(&args.output)?;
     let name = args.backplate.to_string_lossy();
-    let photo =
-        photo::read(&name, &bytes(&args.backplate, &mut registry)?, memory_limit()).map_err(from_photo_error)?;
+    let photo = photo::read(&name, &bytes(&args.backplate, &mut registry)?, Memory::default().limit())
+        .map_err(from_photo_error)?;
     let destination = registry.register_output("--output", &args.output)?;
     let [width, height] = photo.size();
     let mut options = load_options(&args.reading);

@@ -1,13 +1,14 @@
 //! Implements `durer photo tour`, which writes an HTML page for moving through photographs in 3D.
 
 use super::args::TourArgs;
-use super::inputs::{bytes_below, from_photo_error, memory_limit, read};
+use super::inputs::{bytes_below, from_photo_error, read};
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::output::save;
 use crate::{page, progress};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use durer::options::memory::Memory;
 use durer_photo::photo;
 use durer_photo::tour::tour_views;
 use serde_json::json;
@@ -29,7 +30,8 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |photograph| {
         let path = args.pictures.join(&photograph.name);
         let content = bytes_below(&args.pictures, Path::new(&photograph.name), &mut registry)?;
-        let photo = photo::read(&path.to_string_lossy(), &content, memory_limit()).map_err(from_photo_error)?;
+        let photo =
+            photo::read(&path.to_string_lossy(), &content, Memory::default().limit()).map_err(from_photo_error)?;
         if photo.size() != photograph.size {
             let ([w, h], [x, y]) = (photo.size(), photograph.size);
             return Err(invalid_input(format!(

@@ -29,7 +29,7 @@ impl Reader<'_, '_> {
     }
 
     /// Ends the innermost block before the word that was read last, if that word begins a line with
-    /// the same indentation as the block. `message` says why the word cannot be in the block.
+    /// the same indentation as the block. `message` states why the word cannot be in the block.
     pub(super) fn unclosed_by_indentation(&mut self, message: &str) -> bool {
         let (Some(&block), span) = (self.blocks.last(), self.last_span()) else { return false };
         if self.indentation(span).is_none() || self.indentation(span) != self.indentation(block) {

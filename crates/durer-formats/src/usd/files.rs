@@ -6,6 +6,7 @@ use super::{binary, text};
 use crate::files::read_named;
 use crate::growth::ResourceLimits;
 use crate::model::ReadInput;
+use crate::pictures::Pictures;
 use crate::shared_report::SharedReport;
 use crate::zip::{self, Zip};
 use durer_diag::{Diagnostic, Span};
@@ -121,6 +122,11 @@ impl<'a> LayerFiles<'a> {
                 Some(PictureBytes::Memory(format!("{}/{name}", self.input.name), bytes))
             }
         }
+    }
+
+    /// Returns a reader of pictures, which decodes them.
+    pub fn pictures(&self) -> Pictures<'_> {
+        Pictures { input: self.input, report: self.report }
     }
 
     fn parse(&self, bytes: &Arc<[u8]>, file: u32, name: &str, at: Span) -> Option<Layer> {

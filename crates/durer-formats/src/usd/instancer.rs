@@ -1,6 +1,5 @@
 //! Point instancers: many copies of a few prototypes.
 
-use super::layer::Value;
 use super::reader::{Inherited, Reader};
 use super::stage::Prim;
 use durer_scene::scene::{Group, Object, ObjectKind};
@@ -10,11 +9,10 @@ impl Reader<'_, '_> {
     /// Adds the copies of a `PointInstancer`.
     pub fn instances(&mut self, prim: &Prim, here: &Inherited, objects: &mut Vec<Object>, depth: u32) {
         let (files, at) = (self.stage.files, prim.span());
-        let value = |name: &str| prim.get(self.stage, name).map(|opinion| opinion.value);
-        let numbers = |value: &Option<Value>| value.as_ref().map_or(Vec::new(), |value| value.numbers().to_vec());
-        let (positions, indices) = (numbers(&value("positions")), numbers(&value("protoIndices")));
-        let (turns, scales) = (numbers(&value("orientations")), numbers(&value("scales")));
-        let (ids, hidden) = (numbers(&value("ids")), numbers(&value("invisibleIds")));
+        let numbers = |name: &str| prim.numbers(self.stage, name);
+        let (positions, indices) = (numbers("positions"), numbers("protoIndices"));
+        let (turns, scales) = (numbers("orientations"), numbers("scales"));
+        let (ids, hidden) = (numbers("ids"), numbers("invisibleIds"));
         let hidden: std::collections::HashSet<u64> = hidden.iter().map(|id| id.to_bits()).collect();
         let paths = prim.targets("prototypes");
         let mut prototypes = Vec::with_capacity(paths.len());

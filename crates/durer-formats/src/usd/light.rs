@@ -7,7 +7,7 @@ use super::files::joined;
 use super::reader::{Emission, Reader};
 use super::stage::Prim;
 use crate::panorama;
-use crate::pictures::{Pictures, asset, picture_error};
+use crate::pictures::{asset, picture_error};
 use durer_scene::describe::FileName;
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
 use durer_scene::math::{Vec3, fp};
@@ -189,7 +189,7 @@ impl Reader<'_, '_> {
             background.environment_scale = (radiance != Vec3::ONE).then_some(radiance);
             return;
         }
-        let pictures = Pictures { input: files.input, report: files.report };
+        let pictures = files.pictures();
         let image = match &bytes {
             PictureBytes::File(name) => pictures.image(name, span),
             PictureBytes::Memory(name, bytes) => pictures.of_bytes(name, bytes, span),

@@ -246,8 +246,7 @@ impl Reader<'_, '_> {
         opaque(&mut mapping);
         let bytes = self.stage.files.picture(&texture.file, texture.at)?;
         let raw = TextureImage { bytes, mapping };
-        let pictures = crate::pictures::Pictures { input: self.stage.files.input, report: self.stage.files.report };
-        let picture = pictures.reencoded(&raw, texture.at, true, |x| x).unwrap_or(raw);
+        let picture = self.stage.files.pictures().reencoded(&raw, texture.at, true, |x| x).unwrap_or(raw);
         Some(asset(&mut self.scene, picture, texture.at))
     }
 

@@ -320,7 +320,7 @@ impl Reader<'_, '_> {
         levels: u32,
         chosen: Option<&[bool]>,
     ) -> MeshData {
-        let numbers = |name: &str| prim.get(self.stage, name).map_or(Vec::new(), |o| o.value.numbers().to_vec());
+        let numbers = |name: &str| prim.numbers(self.stage, name);
         let (lengths, indices, sharpness) =
             (numbers("creaseLengths"), numbers("creaseIndices"), numbers("creaseSharpnesses"));
         let mut creases = Vec::new();

@@ -30,8 +30,7 @@ impl Primvar {
         if values.is_empty() || values.len() % width != 0 {
             return None;
         }
-        let indices = prim.get(stage, &format!("{name}:indices"));
-        let indices = indices.map_or(Vec::new(), |indices| indices.value.numbers().to_vec());
+        let indices = prim.numbers(stage, &format!("{name}:indices"));
         let interpolation = match opinion.metadata.get("interpolation").and_then(Value::text) {
             Some("constant") => Interpolation::Constant,
             Some("uniform") => Interpolation::Face,

@@ -41,7 +41,7 @@ impl Pose {
         let weights = get("primvars:skel:jointWeights")?;
         let width = indices.metadata.get("elementSize").and_then(Value::number).unwrap_or(1.0).max(1.0) as usize;
         let is_rigid = indices.metadata.get("interpolation").and_then(Value::text) == Some("constant");
-        let names = texts(&skeleton, stage, "joints");
+        let names = skeleton.texts(stage, "joints");
         let bind = matrices(&skeleton, stage, "bindTransforms");
         let rest = matrices(&skeleton, stage, "restTransforms");
         if names.is_empty() || bind.len() != names.len() {
@@ -70,7 +70,7 @@ impl Pose {
         let to_mesh = path_transform(stage, &prim.path).inverse() * path_transform(stage, &skeleton.path);
         let map = |joint: usize| to_mesh * in_pose[joint] * bind[joint].inverse() * at_binding;
         // A mesh can name its own joints.
-        let own = texts(prim, stage, "skel:joints");
+        let own = prim.texts(stage, "skel:joints");
         let joints: Vec<DAffine3> = match own.is_empty() {
             true => (0..names.len()).map(map).collect(),
             false => own
@@ -123,7 +123,7 @@ impl Pose {
 
 /// Returns the transforms of the joints of an animation, relative to their parents.
 fn animated(animation: &Prim, stage: &Stage) -> Vec<(String, DAffine3)> {
-    let numbers = |name: &str| animation.get(stage, name).map_or(Vec::new(), |o| o.value.numbers().to_vec());
+    let numbers = |name: &str| animation.numbers(stage, name);
     let (moves, turns, scales) = (numbers("translations"), numbers("rotations"), numbers("scales"));
     let joint = |(i, name): (usize, String)| {
         let triple = |list: &[f64]| list.as_chunks::<3>().0.get(i).copied().map(DVec3::from_array);
@@ -133,14 +133,7 @@ fn animated(animation: &Prim, stage: &Stage) -> Vec<(String, DAffine3)> {
         let (scale, place) = (triple(&scales).unwrap_or(DVec3::ONE), triple(&moves).unwrap_or(DVec3::ZERO));
         (name, DAffine3::from_scale_rotation_translation(scale, turn, place))
     };
-    texts(animation, stage, "joints").into_iter().enumerate().map(joint).collect()
-}
-
-fn texts(prim: &Prim, stage: &Stage, name: &str) -> Vec<String> {
-    match prim.get(stage, name).map(|opinion| opinion.value) {
-        Some(Value::Texts(texts)) => texts,
-        _ => Vec::new(),
-    }
+    animation.texts(stage, "joints").into_iter().enumerate().map(joint).collect()
 }
 
 fn matrix(numbers: &[f64]) -> Option<DAffine3> {
@@ -148,8 +141,7 @@ fn matrix(numbers: &[f64]) -> Option<DAffine3> {
 }
 
 fn matrices(prim: &Prim, stage: &Stage, name: &str) -> Vec<DAffine3> {
-    let numbers = prim.get(stage, name).map_or(Vec::new(), |opinion| opinion.value.numbers().to_vec());
-    numbers.as_chunks::<16>().0.iter().filter_map(|numbers| matrix(numbers)).collect()
+    prim.numbers(stage, name).as_chunks::<16>().0.iter().filter_map(|numbers| matrix(numbers)).collect()
 }
 
 /// Returns the transform of a prim to world space, without instancers.

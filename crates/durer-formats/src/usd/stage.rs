@@ -425,6 +425,19 @@ impl Prim {
         Some(Opinion { value, metadata, layer: layer.name.clone(), span: property.span })
     }
 
+    /// Returns the numbers of an attribute; empty if it has none.
+    pub fn numbers(&self, stage: &Stage, name: &str) -> Vec<f64> {
+        self.get(stage, name).map_or(Vec::new(), |opinion| opinion.value.numbers().to_vec())
+    }
+
+    /// Returns the texts of an array; empty if the attribute is no array of texts.
+    pub fn texts(&self, stage: &Stage, name: &str) -> Vec<String> {
+        match self.get(stage, name).map(|opinion| opinion.value) {
+            Some(Value::Texts(texts)) => texts,
+            _ => Vec::new(),
+        }
+    }
+
     /// Returns the targets of a relationship, or the connections of an attribute, as paths in the
     /// scene.
     pub fn targets(&self, name: &str) -> Vec<String> {

@@ -9,13 +9,8 @@ use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 /// Returns the transform of a prim relative to its parent, and whether it ignores the transforms of
 /// all ancestors.
 pub(super) fn local_transform(stage: &Stage, prim: &Prim) -> (DAffine3, bool) {
-    let order = prim.get(stage, "xformOpOrder").map(|order| order.value);
-    let names = match order {
-        Some(super::layer::Value::Texts(names)) => names,
-        _ => return (DAffine3::IDENTITY, false),
-    };
     let (mut whole, mut resets) = (DAffine3::IDENTITY, false);
-    for name in &names {
+    for name in &prim.texts(stage, "xformOpOrder") {
         if name == "!resetXformStack!" {
             (whole, resets) = (DAffine3::IDENTITY, true);
             continue;

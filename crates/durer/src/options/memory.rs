@@ -46,6 +46,12 @@ impl Memory {
         Ok(Memory::Bytes((number * (1_u64 << shift) as f64) as u64))
     }
 
+    /// Returns the limit in bytes, or the largest number if the memory size of the machine is
+    /// unknown.
+    pub fn limit(self) -> u64 {
+        self.bytes().unwrap_or(u64::MAX)
+    }
+
     /// Returns the limit in bytes, or `None` if the memory size of the machine is unknown.
     pub fn bytes(self) -> Option<u64> {
         let percent = match self {
