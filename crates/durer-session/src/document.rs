@@ -117,24 +117,8 @@ impl Document {
         let compiled = self.compiled.as_ref()?;
         let span = compiled.loaded.scene.camera_span;
         (span.has_position() && span.file == OWN).then_some(())?;
-        let rest = self.text()?.get(span.start as usize..)?;
-        let mut depth = 0;
-        let mut in_comment = false;
-        for (at, letter) in rest.char_indices() {
-            match letter {
-                '\n' => in_comment = false,
-                '#' => in_comment = true,
-                '{' if !in_comment => depth += 1,
-                '}' if !in_comment => {
-                    depth -= 1;
-                    if depth == 0 {
-                        return Some((span.start as usize, span.start as usize + at + 1));
-                    }
-                }
-                _ => {}
-            }
-        }
-        None
+        let end = block_end(self.text()?.as_bytes(), span.end as usize)?;
+        Some((span.start as usize, end))
     }
 }
 
@@ -187,7 +171,33 @@ impl CompiledDocument {
 fn place(files: &Files, span: Span) -> Option<TextPosition> {
     (span.has_position() && span.file == OWN).then_some(())?;
     let (line, column) = files.position(span)?;
-    Some(TextPosition { line: line as u32, column: column as u32, start: span.start, end: span.end })
+    let block_end = files.bytes(OWN).and_then(|text| block_end(text, span.end as usize));
+    Some(TextPosition {
+        line: line as u32,
+        column: column as u32,
+        start: span.start,
+        end: span.end,
+        block_end: block_end.map_or(span.end, |end| end as u32),
+    })
+}
+
+/// Returns the end of the block in braces that follows the keyword before `start`. Returns `None`
+/// if something other than a block follows, or if the block is not closed.
+fn block_end(text: &[u8], start: usize) -> Option<usize> {
+    let (mut depth, mut in_comment) = (0, false);
+    for (at, byte) in text.iter().enumerate().skip(start) {
+        match byte {
+            b'\n' => in_comment = false,
+            b'#' => in_comment = true,
+            _ if in_comment => {}
+            b'{' => depth += 1,
+            b'}' if depth <= 1 => return (depth == 1).then_some(at + 1),
+            b'}' => depth -= 1,
+            _ if depth == 0 && !byte.is_ascii_whitespace() => return None,
+            _ => {}
+        }
+    }
+    None
 }
 
 fn finding(diagnostic: &Diagnostic, files: &Files) -> Finding {

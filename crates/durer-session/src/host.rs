@@ -2,6 +2,8 @@
 
 use crate::protocol::{Event, EventMessage, Request, RequestMessage};
 use crate::session::{Clock, Session, SessionFiles};
+use crate::share::ReceivedPart;
+use durer::render::PartialRender;
 use std::collections::BTreeMap;
 
 /// Maximum number of sessions. The number is limited because each session keeps a scene in memory.
@@ -53,6 +55,16 @@ impl Host {
             found.accept_disk_version(text);
         }
         found.handle(request, &mut send_message);
+    }
+
+    /// Receives an [`Event::Part`] that the host of another worker has sent. Ignores messages that
+    /// contain no valid part of a picture.
+    pub fn receive_part(&mut self, message: &[u8]) {
+        let Some((answer, payload)) = EventMessage::decode(message) else { return };
+        let Event::Part { revision, index, finished } = answer.event else { return };
+        if let (Some(session), Ok(part)) = (self.sessions.get_mut(&answer.session), PartialRender::read(payload)) {
+            session.receive(ReceivedPart { revision, index, finished, part });
+        }
     }
 
     /// Returns true if there is work for [`Host::step`].

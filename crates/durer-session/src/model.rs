@@ -2,7 +2,7 @@
 //! Models have no text, so their materials are edited here.
 
 use crate::document::CompiledDocument;
-use crate::fields::{field_states, set_numbers};
+use crate::fields::{NewValue, field_states, set_value};
 use crate::protocol::{FieldState, MaterialState, SceneNode};
 use durer::describe::DescribedKind;
 use durer::dialect::Dialect;
@@ -13,15 +13,53 @@ const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene as a tree of groups.
 pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<SceneNode> {
-    let mut left = MAX_NODES;
-    let root = compiled.scene().root.iter().flat_map(|group| &group.objects);
-    root.map_while(|object| node(compiled, object, &mut left)).collect()
+    let scene = compiled.scene();
+    let is_numbered = scene.objects().filter(|object| is_leaf(object)).count() == compiled.world.objects().len();
+    let mut listing = Listing { compiled, left: MAX_NODES, next: is_numbered.then_some(0) };
+    let root = scene.root.iter().flat_map(|group| &group.objects);
+    root.map_while(|object| listing.node(object)).collect()
 }
 
-/// Returns an object with its subtree, or `None` if the maximum number of nodes has been reached.
-fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<SceneNode> {
-    *left = left.checked_sub(1)?;
-    let name = match &object.node {
+/// True for objects that the renderer numbers. Solids count as one, although some are rendered as
+/// several pieces.
+fn is_leaf(object: &Object) -> bool {
+    !matches!(object.node, ObjectKind::Group(_) | ObjectKind::Transform(..))
+}
+
+/// State of the listing of a scene's objects.
+struct Listing<'a> {
+    compiled: &'a CompiledDocument,
+    /// Number of nodes that may still be listed.
+    left: usize,
+    /// Number of the next object in the order of rendering, or `None` if the objects of the scene
+    /// and those that are rendered do not correspond.
+    next: Option<u32>,
+}
+
+impl Listing<'_> {
+    /// Returns an object with its subtree, or `None` if the maximum number of nodes has been
+    /// reached.
+    fn node(&mut self, object: &Object) -> Option<SceneNode> {
+        self.left = self.left.checked_sub(1)?;
+        let number = self.next.filter(|_| is_leaf(object));
+        if let Some(next) = self.next.as_mut().filter(|_| is_leaf(object)) {
+            *next += 1;
+        }
+        let is_solid = matches!(object.node, ObjectKind::Solid(..));
+        let children = if is_solid { &[] } else { object.node.children() };
+        let nodes = children.iter().map_while(|object| self.node(object)).collect();
+        Some(SceneNode {
+            name: name(object),
+            place: self.compiled.place(object.span),
+            object: number,
+            material: object.material,
+            nodes,
+        })
+    }
+}
+
+fn name(object: &Object) -> String {
+    match &object.node {
         ObjectKind::Group(_) => "Group".into(),
         ObjectKind::Transform(..) => "Transform".into(),
         ObjectKind::Solid(operation, _) => operation.keyword().into(),
@@ -29,13 +67,7 @@ fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Optio
         ObjectKind::Mesh(mesh) => mesh.obj_file.path.clone(),
         ObjectKind::Voxels(..) => "VoxelGrid".into(),
         ObjectKind::HeightField(_) => "HeightField".into(),
-    };
-    Some(SceneNode {
-        name,
-        place: compiled.place(object.span),
-        material: object.material,
-        nodes: object.node.children().iter().map_while(|object| node(compiled, object, left)).collect(),
-    })
+    }
 }
 
 /// Returns the materials of a scene with their fields.
@@ -61,12 +93,12 @@ fn described(material: &Material) -> (&'static str, Vec<FieldState>) {
 }
 
 /// Sets a field of a material.
-pub(crate) fn set_material(scene: &mut Scene, number: u32, name: &str, values: &[f32]) -> Result<(), String> {
+pub(crate) fn set_material(scene: &mut Scene, number: u32, name: &str, new: NewValue) -> Result<(), String> {
     let material = scene.materials.get_mut(number as usize).ok_or_else(|| format!("there is no material {number}"))?;
     match &mut material.value {
-        Material::Phong(phong, _) => set_numbers(&mut **phong, name, values),
-        Material::Principled(layers) => set_numbers(&mut **layers, name, values),
-        Material::Hair(hair) => set_numbers(hair, name, values),
-        Material::Solid(solid, _) => set_numbers(solid, name, values),
+        Material::Phong(phong, _) => set_value(&mut **phong, name, new),
+        Material::Principled(layers) => set_value(&mut **layers, name, new),
+        Material::Hair(hair) => set_value(hair, name, new),
+        Material::Solid(solid, _) => set_value(solid, name, new),
     }
 }

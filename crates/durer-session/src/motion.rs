@@ -1,11 +1,11 @@
 //! Motions of the camera, such as orbiting and panning.
 
-use crate::fields::{field_states, set_numbers};
+use crate::fields::{NewValue, field_states, set_value};
 use crate::protocol::{CameraState, Motion};
 use durer::camera::{Camera, Projection};
 use durer::describe::{DescribedKind, Value};
 use durer::dialect::Dialect;
-use durer::math::{Aabb, Vec3};
+use durer::math::{Aabb, Vec2, Vec3};
 use durer::world::World;
 use glam::Quat;
 
@@ -94,10 +94,50 @@ fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> 
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of the camera field whose keyword in the scene language is `word`.
-pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
+/// Returns the camera with this keyword in the scene language, at the place of the world's camera.
+/// `distance` is the distance to the target. Fields that both cameras have keep their values as far
+/// as they are valid.
+pub(crate) fn camera_of_kind(world: &World, distance: f32, keyword: &str) -> Result<Camera, String> {
+    let (old, frame) = (world.camera(), world.camera_frame());
+    let mut camera = Camera::kinds().into_iter().find(|kind| kind.own_keyword() == keyword);
+    let camera = camera.as_mut().ok_or_else(|| format!("there is no camera `{keyword}`"))?;
+    for (i, field) in camera.fields().iter().enumerate() {
+        let same = old.fields().iter().position(|own| own.name == field.name && own.kind == field.kind);
+        let value = same.and_then(|at| old.get(at)).filter(|value| field.constraint.validate(value).is_ok());
+        if let Some(value) = value {
+            camera.set(i, value);
+        }
+    }
+    set(camera, "center", frame.eye);
+    set(camera, "direction", frame.forward);
+    set(camera, "up", frame.up);
+    let aside = distance * frame.half_width as f32 * frame.right;
+    // These cameras have no field for the centre.
+    match camera {
+        Camera::PushBroom(broom) => (broom.start, broom.end) = (frame.eye - aside, frame.eye + aside),
+        Camera::MultipleCenter(many) => {
+            let row = |eye: Vec3| {
+                let ([a, b, c], [d, e, f]) = (eye.to_array(), (eye + distance * frame.forward).to_array());
+                [a, b, c, d, e, f]
+            };
+            many.path = vec![row(frame.eye - aside), row(frame.eye + aside)];
+        }
+        Camera::Projective(photo) => {
+            let [x, y] = [photo.width, photo.height].map(|side| 0.5 * (side - 1.0));
+            let focal = 0.5 * photo.width.max(photo.height) / frame.half_width as f32;
+            let row = |row: Vec3| row.extend(-row.dot(frame.eye)).to_array();
+            let across = focal * frame.right + x * frame.forward;
+            photo.matrix = vec![row(across), row(y * frame.forward - focal * frame.up), row(frame.forward)];
+        }
+        _ => {}
+    }
+    Ok(camera.clone())
+}
+
+/// Sets the value of the camera field whose keyword in the scene language is `word`.
+pub(crate) fn set_field(camera: &mut Camera, word: &str, new: NewValue) -> Result<(), String> {
     let mut changed = camera.clone();
-    set_numbers(&mut changed, word, numbers)?;
+    set_value(&mut changed, word, new)?;
     changed.validate()?;
     *camera = changed;
     Ok(())
@@ -114,14 +154,32 @@ pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance:
         up: frame.up.into(),
         half_width: frame.half_width,
         distance,
+        projects: projects(world, distance),
         fields: field_states(camera),
         statement: statement(camera, dialect),
         moved: camera != written,
     }
 }
 
-/// Returns the camera as a statement in the scene language.
+/// Returns true if the camera shows points at `distance` where a pinhole would show them.
+fn projects(world: &World, distance: f32) -> bool {
+    let frame = world.camera_frame();
+    let half = frame.half_width as f32;
+    [Vec2::new(0.25, -0.625), Vec2::new(-0.75, 0.125), Vec2::new(0.5, 0.5)].into_iter().all(|place| {
+        let direction = frame.forward + half * (place.x * frame.right + place.y * frame.up);
+        let mut seen = Vec::new();
+        let point = frame.eye + distance * direction;
+        world.camera().project(frame, point, Vec2::splat(0.5), &mut |at| seen.push(at));
+        matches!(seen[..], [at] if at.distance(place) < 1e-3)
+    })
+}
+
+/// Returns the camera as a statement in the scene language. If the dialect has no such camera, the
+/// statement is in Dürer's own.
 pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
+    let is_known = camera.keywords().iter().any(|(_, set)| dialect.is_in(*set));
+    let dialect = if is_known { dialect } else { Dialect::Durer };
+    let numbers = |row: &Vec<f32>| row.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
     let fields = camera.fields().iter().enumerate().filter_map(|(i, field)| {
         let word = field.keyword(dialect)?;
         let value = match camera.get(i)? {
@@ -130,7 +188,7 @@ pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
             Value::Vec3(v) => format!("{} {} {}", v.x, v.y, v.z),
             Value::Word(word) => word,
             Value::Path(name) => name.path,
-            Value::Rows(_) => return None,
+            Value::Rows(rows) => format!("{{ {} }}", rows.iter().map(numbers).collect::<Vec<_>>().join("  ")),
         };
         Some(format!("{word} {value}"))
     });

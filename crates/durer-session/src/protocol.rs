@@ -103,6 +103,8 @@ pub enum Request {
         name: String,
         /// Numbers of its value.
         values: Vec<f32>,
+        /// The value, if it is a word.
+        word: Option<String>,
         /// True while the motion continues.
         moving: bool,
     },
@@ -118,6 +120,12 @@ pub enum Request {
         angle: f32,
         /// True while the motion continues.
         moving: bool,
+    },
+    /// Replaces the camera with one of another kind at the same place. The answer is
+    /// [`Event::Camera`].
+    Camera {
+        /// Keyword of the new camera, from the `cameras` of [`Event::Opened`].
+        keyword: String,
     },
     /// Writes the camera into the text. The answer is [`Event::Text`].
     WriteCamera,
@@ -158,6 +166,10 @@ pub enum Request {
         origin: [f32; 3],
         /// Direction of the ray, of any length.
         direction: [f32; 3],
+        /// End of the ray, in lengths of `direction`; `None` for an infinite ray.
+        t_max: Option<f32>,
+        /// True for a shadow ray, which ends at any hit; false to find the closest hit.
+        any: bool,
     },
     /// Requests the bounding boxes of the BVHs of objects and triangles. The answer is
     /// [`Event::Boxes`].
@@ -198,8 +210,10 @@ pub enum Request {
         number: u32,
         /// Name of the field.
         name: String,
-        /// Values of the field.
+        /// Numbers of its value.
         values: Vec<f32>,
+        /// The value, if it is a word.
+        word: Option<String>,
     },
     /// Converts a model to text in the scene language with separate asset files. The answer is
     /// [`Event::Opened`], followed by [`Event::Scene`].
@@ -209,6 +223,20 @@ pub enum Request {
     Pack,
     /// Requests the lesson with which the server was started. The answer is [`Event::Lesson`].
     Lesson,
+    /// Requests the common mistakes that can be rendered. The answer is [`Event::Mistakes`].
+    Mistakes,
+    /// Renders the scene with Whitted's method and a common mistake. The answer is
+    /// [`Event::Mistaken`].
+    Mistake {
+        /// Name of the mistake; `None` renders the correct picture for comparison.
+        name: Option<String>,
+        /// Value of the mistake, such as a factor; `None` for its first value.
+        value: Option<f32>,
+        /// Width of the picture in pixels.
+        width: u32,
+        /// Height of the picture in pixels.
+        height: u32,
+    },
     /// Requests the outlines of all objects. The answer is [`Event::Outlines`].
     Outlines,
     /// Requests the keywords of the language. The answer is [`Event::Language`].
@@ -224,6 +252,16 @@ pub enum Request {
     Save {
         /// True to overwrite changes by other programs.
         force: bool,
+    },
+    /// Divides the pictures of this session among several workers, each of which has a session
+    /// with the same number that receives the same requests. This must be the first request. The
+    /// first worker answers them and shows the pictures. The others only render, and send
+    /// [`Event::Part`] to the first one.
+    Share {
+        /// Number of this worker, from 1.
+        index: u32,
+        /// Number of workers, at most 64.
+        count: u32,
     },
     /// Pauses or resumes rendering. Hidden pages use this request.
     Pause {
@@ -256,6 +294,8 @@ pub enum Event {
         tones: Vec<String>,
         /// Integrators.
         integrators: Vec<NamedChoice>,
+        /// Kinds of cameras, by keyword.
+        cameras: Vec<NamedChoice>,
     },
     /// The text of the scene was read and compiled.
     Scene {
@@ -339,6 +379,30 @@ pub enum Event {
         /// Lesson in Markdown; `None` if the server has none.
         text: Option<String>,
     },
+    /// Common mistakes, in the order of the lecture's table.
+    Mistakes {
+        /// The mistakes.
+        mistakes: Vec<MistakeChoice>,
+    },
+    /// Picture of the scene with a mistake. The payload contains four bytes per pixel.
+    Mistaken {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Fraction of the pixels whose eight-bit colour differs from the correct picture.
+        changed: f64,
+    },
+    /// Blocks of a picture that a worker has rendered for the first worker. The payload contains
+    /// a saved part.
+    Part {
+        /// Number of changes to the scene, camera and options before this picture.
+        revision: u32,
+        /// Number of the worker, from 1.
+        index: u32,
+        /// True if the worker's share is finished.
+        finished: bool,
+    },
     /// Line drawing of the scene.
     Outlines {
         /// Outlines, one per object, up to a limit.
@@ -384,6 +448,13 @@ impl EventMessage {
         bytes.extend(json);
         bytes.extend(payload);
         bytes
+    }
+
+    /// Decodes a message into its JSON and its payload. Returns `None` if it is malformed.
+    pub fn decode(bytes: &[u8]) -> Option<(EventMessage, &[u8])> {
+        let (length, rest) = bytes.split_first_chunk::<4>()?;
+        let (json, payload) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+        Some((serde_json::from_slice(json).ok()?, payload))
     }
 }
 

@@ -3,19 +3,20 @@
 mod disk;
 
 use crate::document::{CompiledDocument, Document};
-use crate::motion::{distance, moved, set_field, state};
+use crate::fields::NewValue;
+use crate::motion::{camera_of_kind, distance, moved, set_field, state};
 use crate::outlines::{light_markers, outlines};
-use crate::protocol::{
-    CameraState, Event, Finding, JobState, Motion, NamedChoice, Request, SceneItem, SceneSummary, Structure,
-};
-use crate::viewer::{PictureMessage, Viewer};
-use crate::{intersection_tests, language, model, terms, traversal};
+use crate::protocol::{CameraState, Event, Finding, JobState, Motion, NamedChoice, Request, SceneItem, SceneSummary};
+use crate::share::{ReceivedPart, Share, changes_picture};
+use crate::viewer::Viewer;
+use crate::{intersection_tests, language, mistakes, model, terms, traversal};
 use durer::camera::{Camera, PerspectiveCamera, Projection};
 use durer::describe::DescribedKind;
 use durer::film::aov::AOVS;
 use durer::image::Tone;
 use durer::integrator::IntegratorKind;
 use durer::math::{Ray, Vec3};
+use durer::render::Job;
 use durer::render::explain::explain_samples;
 use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
@@ -99,8 +100,24 @@ impl Session {
         !self.paused && self.viewer.is_urgent()
     }
 
-    /// Answers a request. Pictures are rendered later by [`Session::step`].
+    /// Answers a request. Pictures are rendered later by [`Session::step`]. A helper handles only
+    /// requests that change the picture, and does not answer them.
     pub(crate) fn handle(&mut self, request: Request, send_message: &mut dyn FnMut(Message)) {
+        let changes = changes_picture(&request, &self.viewer.picture);
+        if changes {
+            self.viewer.share.change();
+        }
+        if self.viewer.share.is_helper() {
+            let is_own = matches!(request, Request::Share { .. } | Request::Pause { .. } | Request::Close);
+            if changes || is_own {
+                // The first worker tells the page about errors.
+                let _ = self.answer(request, &mut |_| {});
+            }
+            if changes {
+                self.viewer.report_again();
+            }
+            return;
+        }
         if let Err(why) = self.answer(request, send_message) {
             send_message((Event::Refused { why }, Vec::new()));
         }
@@ -143,10 +160,10 @@ impl Session {
                 }
                 send(self.looked(moving)?);
             }
-            Request::Field { name, values, moving } => {
+            Request::Field { name, values, word, moving } => {
                 let world = &mut self.compiled()?.world;
                 let mut camera = world.camera().clone();
-                set_field(&mut camera, &name, &values)?;
+                set_field(&mut camera, &name, NewValue { numbers: &values, word: word.as_deref() })?;
                 world.set_camera(camera);
                 send(self.looked(moving)?);
             }
@@ -155,6 +172,12 @@ impl Session {
                 let camera = Camera::from(PerspectiveCamera { center, direction, up, angle });
                 self.place(camera)?;
                 send(self.looked(moving)?);
+            }
+            Request::Camera { keyword } => {
+                let distance = self.distance;
+                let camera = camera_of_kind(&self.compiled()?.world, distance, &keyword)?;
+                self.place(camera)?;
+                send(self.looked(false)?);
             }
             Request::WriteCamera => {
                 let text = self.write_camera()?;
@@ -169,9 +192,10 @@ impl Session {
                 let rays = traversal::rays(&self.compiled()?.world, [columns, rows], row)?;
                 send(Event::Rays { rays });
             }
-            Request::Walk { structure, origin, direction } => {
-                let walk = self.walk(structure, origin, direction)?;
-                send(walk);
+            Request::Walk { structure, origin, direction, t_max, any } => {
+                let ray = ray_of(origin, direction, t_max)?;
+                let walk = traversal::traverse(&self.compiled()?.world, structure, &ray, any)?;
+                send(Event::Walk { walk });
             }
             Request::Boxes => send(Event::Boxes { boxes: traversal::boxes(&self.compiled()?.world) }),
             Request::Values { left, top, width, height } => {
@@ -197,10 +221,11 @@ impl Session {
                 let compiled = self.compiled()?;
                 send(Event::Tree { nodes: model::nodes(compiled), materials: model::materials(compiled) });
             }
-            Request::Material { number, name, values } => {
+            Request::Material { number, name, values, word } => {
+                let new = NewValue { numbers: &values, word: word.as_deref() };
                 let document = self.document.as_mut().filter(|document| document.is_model());
                 let document = document.ok_or("this scene is a text file: edit the materials in the text")?;
-                document.change(|scene| model::set_material(scene, number, &name, &values))?;
+                document.change(|scene| model::set_material(scene, number, &name, new))?;
                 self.restart();
                 let contents = Some(self.contents()?);
                 send(Event::Scene { findings: Vec::new(), contents, ms: 0.0 });
@@ -216,8 +241,16 @@ impl Session {
                 let text = text.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
                 send(Event::Lesson { text });
             }
+            Request::Mistakes => send(Event::Mistakes { mistakes: mistakes::choices(self.compiled()?) }),
+            Request::Mistake { name, value, width, height } => {
+                let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
+                let compiled = compiled.ok_or("the scene has errors")?;
+                let job = Job { width, height, ..self.viewer.job_of(compiled, "color")? };
+                let shown = mistakes::picture(compiled, job, name.as_deref(), value)?;
+                send_message((Event::Mistaken { width, height, changed: shown.changed }, shown.pixels));
+            }
             Request::Cast { origin, direction, t_max } => {
-                let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray_of(origin, direction)? };
+                let ray = ray_of(origin, direction, t_max)?;
                 let cast = intersection_tests::cast(self.compiled()?, &ray);
                 send(Event::Cast { cast });
             }
@@ -233,6 +266,10 @@ impl Session {
             Request::Save { force } => {
                 let saved = self.save(force)?;
                 send(saved);
+            }
+            Request::Share { index, count } => {
+                self.viewer.share = Share::new(index, count)?;
+                self.restart();
             }
             Request::Pause { pause } => self.paused = pause,
             Request::Close => self.document = None,
@@ -299,6 +336,7 @@ impl Session {
                 .collect(),
             tones: Tone::ALL.iter().map(|(name, _)| (*name).into()).collect(),
             integrators: IntegratorKind::kinds().iter().map(|kind| choice((kind.own_keyword(), kind.doc()))).collect(),
+            cameras: Camera::kinds().iter().map(|kind| choice((kind.own_keyword(), kind.doc()))).collect(),
         });
         self.document = Some(document);
         self.read(true, send)
@@ -437,11 +475,6 @@ impl Session {
         Ok(Event::Explained { pixel: terms::explain(compiled, &job, &explanation, sample) })
     }
 
-    fn walk(&mut self, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> Result<Event, String> {
-        let ray = ray_of(origin, direction)?;
-        Ok(Event::Walk { walk: traversal::traverse(&self.compiled()?.world, structure, &ray)? })
-    }
-
     /// Converts a model to text with asset files. After that, the session edits the text.
     fn become_text(&mut self, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let document = self.document.as_mut().ok_or("no scene is open")?;
@@ -472,9 +505,15 @@ impl Session {
     fn show_again(&mut self, send_message: &mut dyn FnMut(Message)) {
         let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
         match compiled.and_then(|compiled| self.viewer.again(compiled, &*self.clock)) {
-            Some(shown) => send_message(picture(shown)),
-            None => self.restart(),
+            Some((head, bytes)) => send_message((Event::Picture { head }, bytes)),
+            None if self.viewer.is_empty() || self.viewer.share.shard.count == 1 => self.restart(),
+            None => {}
         }
+    }
+
+    /// Receives a part of the picture that another worker has rendered.
+    pub(crate) fn receive(&mut self, part: ReceivedPart) {
+        self.viewer.receive(part);
     }
 
     fn document_mut(&mut self) -> Result<&mut Document, String> {
@@ -495,11 +534,11 @@ impl Session {
         };
         if self.viewer.is_busy() {
             match self.viewer.step(compiled, &*self.clock) {
-                Ok(Some(shown)) => send_message(picture(shown)),
+                Ok(Some(shown)) => send_message(shown),
                 Ok(None) => {}
                 Err(why) => send_message((Event::Refused { why }, Vec::new())),
             }
-        } else if std::mem::take(&mut self.unchecked) {
+        } else if std::mem::take(&mut self.unchecked) && !self.viewer.share.is_helper() {
             let findings: Vec<Finding> = match self.viewer.job_of(compiled, "color") {
                 Ok(job) => compiled.check(&job),
                 Err(_) => return,
@@ -507,10 +546,6 @@ impl Session {
             send_message((Event::Checked { findings }, Vec::new()));
         }
     }
-}
-
-fn picture((head, bytes): PictureMessage) -> Message {
-    (Event::Picture { head }, bytes)
 }
 
 fn read(path: &Path) -> Result<Arc<[u8]>, String> {
@@ -523,8 +558,8 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
 }
 
 /// Converts a ray that a page has sent.
-fn ray_of(origin: [f32; 3], direction: [f32; 3]) -> Result<Ray, String> {
-    let ray = Ray::new(origin.into(), direction.into());
+fn ray_of(origin: [f32; 3], direction: [f32; 3], t_max: Option<f32>) -> Result<Ray, String> {
+    let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..Ray::new(origin.into(), direction.into()) };
     match ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO {
         true => Ok(ray),
         false => Err("a ray needs finite numbers, and a direction that is not 0 0 0".into()),

@@ -39,6 +39,8 @@ struct TraversalRecorder<'a> {
     world: &'a World,
     ray: Ray64,
     closest: Option<TraversalTest>,
+    /// True for a shadow ray, which ends at any hit.
+    any: bool,
 }
 
 impl TraversalRecorder<'_> {
@@ -54,8 +56,34 @@ impl TraversalRecorder<'_> {
     }
 
     /// Returns the end of the interval of `t` in which a hit can still be the closest one.
+    /// A shadow ray that hit something ends at once.
     fn end(&self) -> f32 {
+        if self.is_over() {
+            return f32::NEG_INFINITY;
+        }
         self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
+    }
+
+    /// Returns the ray that is left for the structure after the unbounded objects.
+    fn rest(&self) -> Ray {
+        Ray { t_max: if self.is_over() { f32::NEG_INFINITY } else { self.ray.rounded.t_max }, ..self.ray.rounded }
+    }
+
+    /// True for a shadow ray that hit something.
+    fn is_over(&self) -> bool {
+        self.any && self.closest.is_some()
+    }
+
+    /// Tests objects one after another, until a shadow ray hits one of them.
+    fn test_each(&mut self, objects: impl IntoIterator<Item = u32>) -> Vec<TraversalTest> {
+        let mut tests = Vec::new();
+        for object in objects {
+            tests.push(self.test(object));
+            if self.is_over() {
+                break;
+            }
+        }
+        tests
     }
 
     fn step(&self, bounds: Option<Aabb>, level: u32, tests: Vec<TraversalTest>) -> TraversalStep {
@@ -66,23 +94,26 @@ impl TraversalRecorder<'_> {
 
 /// Builds a structure for all bounded objects and records how a ray traverses it. Unbounded objects
 /// such as planes are tested first.
-pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result<Traversal, String> {
+pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray, any: bool) -> Result<Traversal, String> {
     let objects = world.objects();
     if objects.len() > MAX_OBJECTS {
         return Err(format!("the scene has more than {MAX_OBJECTS} objects"));
     }
-    let mut walker = TraversalRecorder { world, ray: Ray64::from(*ray), closest: None };
+    let mut walker = TraversalRecorder { world, ray: Ray64::from(*ray), closest: None, any };
     let (bounded, endless): (Vec<u32>, Vec<u32>) =
         (0..objects.len() as u32).partition(|&i| objects[i as usize].bounds().is_some());
     let boxes: Vec<Aabb> = bounded.iter().filter_map(|&i| objects[i as usize].bounds()).collect();
     let (mut steps, mut shown, mut visits) = (Vec::new(), Vec::new(), 0);
     if !endless.is_empty() {
-        let tests = endless.iter().map(|&object| walker.test(object)).collect();
+        let tests = walker.test_each(endless);
         steps.push(walker.step(None, 0, tests));
     }
     match structure {
         Structure::Nothing => {
             for &object in &bounded {
+                if walker.is_over() {
+                    break;
+                }
                 let tests = vec![walker.test(object)];
                 steps.push(walker.step(objects[object as usize].bounds(), 0, tests));
             }
@@ -90,8 +121,9 @@ pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result
         Structure::Tree => {
             let tree = Bvh::build(&boxes);
             let mut tested = Vec::new();
-            let visited = tree.visits(ray, |item, _| {
-                let test = walker.test(bounded[tree.primitive_indices()[item] as usize]);
+            let visited = tree.visits(&walker.rest(), |item, _| {
+                let object = bounded[tree.primitive_indices()[item] as usize];
+                let test = (!walker.is_over()).then(|| walker.test(object));
                 tested.push((test, walker.closest));
                 walker.end()
             });
@@ -101,7 +133,7 @@ pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result
             for visit in visited {
                 let tests: Vec<_> = tested.by_ref().take(visit.items.len()).collect();
                 closest = tests.last().map_or(closest, |(_, closest)| closest.and_then(|closest| closest.t));
-                let tests = tests.into_iter().map(|(test, _)| test).collect();
+                let tests = tests.into_iter().filter_map(|(test, _)| test).collect();
                 steps.push(TraversalStep { closest, ..walker.step(Some(visit.bounds), visit.level, tests) });
             }
             shown.extend(tree.boxes().take(MAX_BOXES).map(|found| state(found.level, &found.bounds, |corner| corner)));
@@ -112,9 +144,9 @@ pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result
             let grid = Grid::build(bounds, Grid::suggested_resolution(bounds, boxes.len()), &boxes, overlaps)
                 .filter(|_| !boxes.is_empty())
                 .ok_or("no grid can be built over these objects")?;
-            grid.traverse_cells(ray, |grid, cell, _| {
+            grid.traverse_cells(&walker.rest(), |grid, cell, _| {
                 visits += 1;
-                let tests = grid.primitives(cell).iter().map(|&i| walker.test(bounded[i as usize])).collect();
+                let tests = walker.test_each(grid.primitives(cell).iter().map(|&i| bounded[i as usize]));
                 steps.push(walker.step(Some(grid.cell_bounds(cell)), 0, tests));
                 walker.end()
             });

@@ -3,7 +3,8 @@
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
 use crate::export::export;
-use crate::protocol::{PictureInfo, Setting};
+use crate::protocol::{Event, PictureInfo, Setting};
+use crate::share::{ReceivedPart, Share};
 use durer::RenderJob;
 use durer::image::Layer;
 use durer::job::OutputSelection;
@@ -52,6 +53,10 @@ pub(crate) struct Viewer {
     rays: u64,
     /// Time at which rendering of the fine picture started.
     began: f64,
+    /// The workers that render the picture.
+    pub share: Share,
+    /// Time that a helper needs to write its part, in milliseconds.
+    report_cost: f64,
 }
 
 /// Stage of progressive rendering in a [`Viewer`]: idle, coarse picture or full picture.
@@ -63,10 +68,15 @@ enum Stage {
     /// The full picture is being rendered. The number is the number of samples per pixel after the
     /// last complete pass.
     Fine(Box<ProgressiveRender>, Option<u32>),
+    /// This worker's share of the full picture is finished, and those of other workers are not.
+    Waiting(Box<ProgressiveRender>, Option<u32>),
 }
 
-/// A picture to send to the page, as a description and pixels.
-pub(crate) type PictureMessage = (PictureInfo, Vec<u8>);
+/// A picture as a description and pixels.
+type PictureMessage = (PictureInfo, Vec<u8>);
+
+/// A picture or a helper's part, with its bytes.
+type ViewerMessage = (Event, Vec<u8>);
 
 impl Viewer {
     pub fn new() -> Self {
@@ -89,6 +99,28 @@ impl Viewer {
             clean: None,
             rays: 0,
             began: 0.0,
+            share: Share::default(),
+            report_cost: 0.0,
+        }
+    }
+
+    /// Receives a part of the picture that another worker has rendered.
+    pub fn receive(&mut self, part: ReceivedPart) {
+        if self.share.receive(part) {
+            self.stage = match std::mem::replace(&mut self.stage, Stage::Idle) {
+                Stage::Waiting(render, seen) => Stage::Fine(render, seen),
+                stage => stage,
+            };
+        }
+    }
+
+    /// Makes a helper report its part again, because the first worker ignores outdated ones.
+    pub fn report_again(&mut self) {
+        self.reported = f64::NEG_INFINITY;
+        if matches!(self.stage, Stage::Idle)
+            && let Some(render) = self.shown.take()
+        {
+            self.stage = Stage::Fine(Box::new(render), None);
         }
     }
 
@@ -128,7 +160,12 @@ impl Viewer {
     }
 
     pub fn is_busy(&self) -> bool {
-        !matches!(self.stage, Stage::Idle)
+        !matches!(self.stage, Stage::Idle | Stage::Waiting(..))
+    }
+
+    /// Returns true if there is no picture and none is being rendered.
+    pub fn is_empty(&self) -> bool {
+        matches!(self.stage, Stage::Idle) && self.shown.is_none()
     }
 
     /// Returns the job of the picture that is shown.
@@ -155,11 +192,85 @@ impl Viewer {
         &mut self,
         compiled: &CompiledDocument,
         clock: &dyn Fn() -> f64,
-    ) -> Result<Option<PictureMessage>, String> {
+    ) -> Result<Option<ViewerMessage>, String> {
+        let picture = |(head, bytes)| (Event::Picture { head }, bytes);
         match std::mem::replace(&mut self.stage, Stage::Idle) {
             Stage::Idle => Ok(None),
-            Stage::Coarse => self.coarse(compiled, clock),
-            Stage::Fine(render, seen) => self.fine(compiled, render, seen, clock),
+            Stage::Coarse if self.share.is_helper() => {
+                self.start_share(compiled, clock)?;
+                Ok(None)
+            }
+            Stage::Coarse => Ok(self.coarse(compiled, clock)?.map(picture)),
+            Stage::Fine(render, seen) if self.share.is_helper() => self.help(compiled, render, seen, clock),
+            Stage::Fine(render, seen) => Ok(self.fine(compiled, render, seen, clock)?.map(picture)),
+            Stage::Waiting(render, seen) => {
+                self.stage = Stage::Waiting(render, seen);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Starts a helper's share of the full picture, unless the camera moves or the picture cannot
+    /// be shared.
+    fn start_share(&mut self, compiled: &CompiledDocument, clock: &dyn Fn() -> f64) -> Result<(), String> {
+        if !self.moving {
+            let job = self.job(compiled)?;
+            if let Ok(render) = ProgressiveRender::with_shard(&compiled.world, &job, self.share.shard) {
+                self.stage = Stage::Fine(Box::new(render), None);
+            }
+            (self.reported, self.began) = (f64::NEG_INFINITY, clock());
+        }
+        Ok(())
+    }
+
+    /// Renders a helper's share for about one [`STEP`], and reports it from time to time.
+    fn help(
+        &mut self,
+        compiled: &CompiledDocument,
+        mut render: Box<ProgressiveRender>,
+        seen: Option<u32>,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<Option<ViewerMessage>, String> {
+        let (samples, finished) = self.advance(compiled, &mut render, seen, clock)?;
+        let is_new = samples != seen || self.reported == f64::NEG_INFINITY;
+        let is_due = clock() - self.reported > BETWEEN.max(10.0 * self.report_cost);
+        let mut message = None;
+        if finished || samples.is_some() && is_new && is_due {
+            let start = clock();
+            message = Some((self.share.message(finished), render.part().write()));
+            self.reported = clock();
+            self.report_cost = self.reported - start;
+        }
+        match finished {
+            true => self.shown = Some(*render),
+            false => self.stage = Stage::Fine(render, samples),
+        }
+        Ok(message)
+    }
+
+    /// Renders for about one [`STEP`]. Returns the samples per pixel after the last complete pass,
+    /// and whether all passes are complete.
+    fn advance(
+        &mut self,
+        compiled: &CompiledDocument,
+        render: &mut ProgressiveRender,
+        seen: Option<u32>,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<(Option<u32>, bool), String> {
+        let control = Control { max_tiles: Some(self.tiles), ..Control::default() };
+        let start = clock();
+        let passed = render.next_pass(&compiled.world, &control);
+        let took = clock() - start;
+        self.rays += control.rays.load(std::sync::atomic::Ordering::Relaxed);
+        if took > 0.0 {
+            let wanted = self.tiles as f64 * (STEP / took).clamp(0.5, 2.0);
+            self.tiles = (wanted as u64).clamp(1, 1 << 16);
+        }
+        match passed {
+            Ok(Some(progress)) => Ok((Some(progress.samples), progress.samples >= progress.all_samples)),
+            Ok(None) => Ok((seen, true)),
+            Err(RenderError::Cancelled) => Ok((seen, false)),
+            Err(error) => Err(wrong(error)),
         }
     }
 
@@ -204,7 +315,10 @@ impl Viewer {
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
         if !self.moving {
-            let render = ProgressiveRender::new(&compiled.world, &job).map_err(wrong)?;
+            // A picture that cannot be divided into shards is rendered by the first worker alone.
+            let render = ProgressiveRender::with_shard(&compiled.world, &job, self.share.shard)
+                .or_else(|_| ProgressiveRender::new(&compiled.world, &job))
+                .map_err(wrong)?;
             self.stage = Stage::Fine(Box::new(render), None);
             self.began = clock();
         }
@@ -219,23 +333,22 @@ impl Viewer {
         seen: Option<u32>,
         clock: &dyn Fn() -> f64,
     ) -> Result<Option<PictureMessage>, String> {
-        let control = Control { max_tiles: Some(self.tiles), ..Control::default() };
-        let start = clock();
-        let passed = render.next_pass(&compiled.world, &control);
-        let took = clock() - start;
-        self.rays += control.rays.load(std::sync::atomic::Ordering::Relaxed);
-        if took > 0.0 {
-            let wanted = self.tiles as f64 * (STEP / took).clamp(0.5, 2.0);
-            self.tiles = (wanted as u64).clamp(1, 1 << 16);
+        let is_shared = render.part().shard().count > 1;
+        if !self.share.absorb(&mut render) {
+            // The workers disagree about the scene, so the picture is not divided any more.
+            self.share = Share::default();
+            self.restart(clock());
+            return Ok(None);
         }
-        let (samples, finished) = match passed {
-            Ok(Some(progress)) => (Some(progress.samples), progress.samples >= progress.all_samples),
-            Ok(None) => (seen, true),
-            Err(RenderError::Cancelled) => (seen, false),
-            Err(error) => return Err(wrong(error)),
-        };
-        let due = samples.is_some() && (samples != seen && seen.is_none() || clock() - self.reported > BETWEEN);
+        let (samples, is_over) = self.advance(compiled, &mut render, seen, clock)?;
+        let finished = is_over && self.share.is_complete(&render);
+        let due = samples.is_some()
+            && (samples != seen && seen.is_none() || clock() - self.reported > BETWEEN)
+            && (!is_shared || render.part().is_whole());
         let mut shown = None;
+        if is_shared && (due || finished) {
+            self.rays = render.part().statistics().rays;
+        }
         if due || finished {
             let hash = finished.then(|| render.part().hash().to_string());
             self.clean = if finished { self.denoised(&render, compiled)? } else { None };
@@ -247,16 +360,17 @@ impl Viewer {
             self.reported = clock();
             shown = Some(self.head((head, bytes), Some(render.part().job()), clock));
         }
-        match finished {
-            true => self.shown = Some(*render),
-            false => self.stage = Stage::Fine(render, samples),
+        match (finished, is_over) {
+            (true, _) => self.shown = Some(*render),
+            (false, true) => self.stage = Stage::Waiting(render, samples),
+            (false, false) => self.stage = Stage::Fine(render, samples),
         }
         Ok(shown)
     }
 
     /// Encodes the finished picture again with the current display settings.
     pub fn again(&mut self, compiled: &CompiledDocument, clock: &dyn Fn() -> f64) -> Option<PictureMessage> {
-        let render = self.shown.take_if(|_| !matches!(self.stage, Stage::Coarse | Stage::Fine(..)))?;
+        let render = self.shown.take_if(|_| matches!(self.stage, Stage::Idle))?;
         let shown = self.encode(&render, compiled);
         let shown = shown.ok().map(|shown| self.head(shown, Some(render.part().job()), clock));
         self.shown = Some(render);
@@ -285,7 +399,7 @@ impl Viewer {
     /// picture that is shown instead.
     pub fn values(&self, [left, top, width, height]: [u32; 4]) -> Result<Vec<Option<f32>>, String> {
         let render = match &self.stage {
-            Stage::Fine(render, Some(_)) => render,
+            Stage::Fine(render, Some(_)) | Stage::Waiting(render, Some(_)) if render.part().is_whole() => render,
             _ => self.shown.as_ref().ok_or("the picture is not finished yet")?,
         };
         let window = render.part().job().window();

@@ -3,7 +3,7 @@
 mod page;
 
 use durer_session::SessionFiles;
-use durer_session::protocol::{Event, PictureInfo, SceneNode, Structure, Traversal};
+use durer_session::protocol::{Event, NamedChoice, PictureInfo, SceneNode, Structure, Traversal};
 use page::{Page, scene};
 use serde_json::json;
 
@@ -32,7 +32,7 @@ fn one(page: &mut Page, request: serde_json::Value) -> Event {
 }
 
 fn walk(page: &mut Page, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> Traversal {
-    let ask = json!({ "kind": "walk", "structure": structure, "origin": origin, "direction": direction });
+    let ask = json!({ "kind": "walk", "structure": structure, "origin": origin, "direction": direction, "any": false });
     let Event::Walk { walk } = one(page, ask) else { panic!() };
     walk
 }
@@ -264,4 +264,130 @@ fn a_lesson_and_scenes_beside_it_are_read_from_its_folder_alone() {
         assert!(matches!(answer, Event::Refused { .. }), "{name}");
     }
     assert!(matches!(one(&mut Page::new(None), json!({ "kind": "lesson" })), Event::Lesson { text: None }));
+}
+
+#[test]
+fn shadow_rays_end_at_any_hit() {
+    let mut page = open(&balls());
+    let mut counts = [0, 0];
+    for turn in 0..30_i16 {
+        let direction = [0.04 * f32::from(turn - 15), 0.03 * f32::from(turn % 7 - 3), -1.0];
+        for structure in [Structure::Nothing, Structure::Grid, Structure::Tree] {
+            let mut ask = |any: bool, t_max: Option<f32>| {
+                let ask = json!({ "kind": "walk", "structure": structure, "origin": [0.05, 0.1, 9.0],
+                    "direction": direction, "t_max": t_max, "any": any });
+                let Event::Walk { walk } = one(&mut page, ask) else { panic!() };
+                walk
+            };
+            let (closest, any) = (ask(false, None), ask(true, None));
+            assert_eq!(any.hit.is_some(), closest.hit.is_some());
+            assert!(any.tests <= closest.tests);
+            let hits = any.steps.iter().flat_map(|step| &step.tests).filter(|test| test.t.is_some()).count();
+            assert_eq!(hits, usize::from(any.hit.is_some()), "a shadow ray ends at its first hit");
+            counts[0] += closest.tests;
+            counts[1] += any.tests;
+            let before = closest.hit.and_then(|hit| hit.t).map(|t| 0.5 * t);
+            assert!(before.is_none_or(|before| ask(true, Some(before)).hit.is_none()));
+        }
+    }
+    assert!(counts[1] < counts[0], "{counts:?}");
+}
+
+#[test]
+fn cameras_change_their_kind_and_keep_their_place() {
+    let mut page = Page::new(None);
+    let text = balls();
+    let opened = page.ask(&json!({ "kind": "open", "name": "scene.txt", "text": text }).to_string());
+    let Event::Opened { cameras, .. } = &opened[0].0 else { panic!() };
+    assert!(cameras.len() >= 15);
+    for camera in cameras {
+        let ask = json!({ "kind": "camera", "keyword": camera.name });
+        let Event::Camera { camera: state } = one(&mut page, ask) else { panic!("{}", camera.name) };
+        assert_eq!(state.keyword, camera.name);
+        assert!(!camera.doc.is_empty());
+        let pinholes = ["PerspectiveCamera", "PinholeCamera", "ThinLensCamera", "ProjectiveCamera"];
+        assert_eq!(state.projects, pinholes.contains(&state.keyword.as_str()), "{}", state.keyword);
+        let [eye, wanted] = [state.eye, [0.0, 0.0, 9.0]].map(glam::Vec3::from);
+        assert!(eye.distance(wanted) < 1e-4, "{}: {eye}", state.keyword);
+    }
+    let ask = json!({ "kind": "camera", "keyword": "Camcorder" });
+    assert!(matches!(one(&mut page, ask), Event::Refused { .. }));
+    // The text with each camera is valid and has that camera.
+    let Event::Opened { cameras, .. } = opened[0].0.clone() else { panic!() };
+    for NamedChoice { name, .. } in cameras {
+        let mut page = open(&text);
+        one(&mut page, json!({ "kind": "camera", "keyword": name }));
+        let written = page.ask(&json!({ "kind": "write_camera" }).to_string());
+        let Event::Text { text, .. } = &written[0].0 else { panic!("{written:?}") };
+        assert!(text.starts_with(&format!("{name} {{")), "{text}");
+        let Event::Scene { contents: Some(contents), .. } = &written[1].0 else { panic!("{name}: {:?}", written[1]) };
+        assert!(!contents.camera.moved, "{name}: {}", contents.camera.statement);
+    }
+}
+
+#[test]
+fn fields_state_their_bounds_and_words() {
+    let mut page = open(&balls());
+    let Event::Camera { camera } = one(&mut page, json!({ "kind": "camera", "keyword": "FisheyeCamera" })) else {
+        panic!()
+    };
+    for field in &camera.fields {
+        assert!(field.choices.is_empty() || field.choices.contains(&field.text), "{field:?}");
+    }
+    let field = |name: &str| camera.fields.iter().find(|field| field.name == name).unwrap().clone();
+    let angle = field("angle");
+    assert_eq!((angle.least, angle.above_least, angle.whole), (Some(0.0), true, false), "{angle:?}");
+    let word = camera.fields.iter().find(|field| field.choices.len() > 1).unwrap();
+    let last = word.choices.last().unwrap();
+    let ask = json!({ "kind": "field", "name": word.name, "values": [], "word": last, "moving": false });
+    let Event::Camera { camera: changed } = one(&mut page, ask) else { panic!() };
+    assert_eq!(&changed.fields.iter().find(|field| field.name == word.name).unwrap().text, last);
+    let ask = json!({ "kind": "field", "name": word.name, "values": [], "word": "sideways", "moving": false });
+    let Event::Refused { why } = one(&mut page, ask) else { panic!() };
+    assert!(why.contains(last), "{why}");
+}
+
+#[test]
+fn places_include_the_block_of_a_statement() {
+    let text = balls();
+    let mut page = Page::new(None);
+    let answers = page.ask(&json!({ "kind": "open", "name": "scene.txt", "text": text }).to_string());
+    let Event::Scene { contents: Some(contents), .. } = &answers[1].0 else { panic!() };
+    let place = contents.objects[1].place.unwrap();
+    let statement = &text[place.start as usize..place.block_end as usize];
+    assert_eq!(statement, "Sphere { center -2.1 -1 -1.3 radius 0.35 }");
+    assert_eq!(&text[place.start as usize..place.end as usize], "Sphere");
+}
+
+#[test]
+fn mistakes_are_listed_and_rendered() {
+    let mut page = open(
+        "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
+        Lights { PointLight { position 4 6 8 color 1 1 1 } }
+        Materials { PhongMaterial { diffuseColor 1 0.5 0.2 } }
+        Group { MaterialIndex 0 Transform { Scale 1 3 1 Sphere { center 0 0 0 radius 1 } } }",
+    );
+    let Event::Mistakes { mistakes } = one(&mut page, json!({ "kind": "mistakes" })) else { panic!() };
+    assert!(mistakes.len() > 200);
+    assert!(mistakes.iter().all(|mistake| !mistake.description.is_empty() && !mistake.values.is_empty()));
+    let mut render = |name: Option<&str>| {
+        let ask = json!({ "kind": "mistake", "name": name, "value": null, "width": 40, "height": 30 });
+        let mut answers = page.ask(&ask.to_string());
+        let (Event::Mistaken { width: 40, height: 30, changed }, bytes) = answers.remove(0) else { panic!() };
+        assert_eq!(bytes.len(), 4 * 40 * 30);
+        (changed, bytes)
+    };
+    let (none, right) = render(None);
+    assert_eq!(none, 0.0);
+    let (changed, wrong) = render(Some("normals-moved"));
+    let counted = right.chunks(4).zip(wrong.chunks(4)).filter(|(right, wrong)| right != wrong).count();
+    assert!(changed > 0.05, "{changed}");
+    assert_eq!(changed, counted as f64 / 1200.0);
+    // The correct picture is the one that the session shows.
+    page.ask(r#"{"kind":"size","width":40,"height":30}"#);
+    assert!(page.pictures().pop().unwrap().1 == right);
+    let ask = json!({ "kind": "mistake", "name": "typo", "width": 40, "height": 30 });
+    assert!(matches!(one(&mut page, ask), Event::Refused { .. }));
+    let ask = json!({ "kind": "mistake", "name": null, "width": 1 << 20, "height": 1 << 20 });
+    assert!(matches!(one(&mut page, ask), Event::Refused { .. }));
 }

@@ -32,6 +32,11 @@ impl Engine {
         self.0.receive(message, &mut |bytes| call(send, &bytes));
     }
 
+    /// Receives a part of a picture that the engine of another worker has sent.
+    pub fn receive_part(&mut self, message: &[u8]) {
+        self.0.receive_part(message);
+    }
+
     /// Works for a few milliseconds. Returns true if work remains.
     pub fn step(&mut self, send: &Function) -> bool {
         self.0.step(&mut |bytes| call(send, &bytes));

@@ -69,6 +69,30 @@ pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeEr
     }
 }
 
+impl PartialRender {
+    /// Copies the blocks of another shard by tiles into this part, which is a shard of the same
+    /// division.
+    pub(super) fn absorb(&mut self, other: &PartialRender) -> Result<(), PartError> {
+        self.same_picture(other)?;
+        let (own, foreign) = (self.shard, other.shard);
+        if [own.by, foreign.by] != [ShardBy::Tiles; 2] || own.count != foreign.count || own.index == foreign.index {
+            return Err(PartError::Malformed(format!("shard {foreign} does not complete shard {own}")));
+        }
+        let (mut state, other) = (self.state(), other.state());
+        for (index, (block, new)) in state.samples.iter_mut().zip(&other.samples).enumerate() {
+            if foreign.has_block(index) && new.to > block.to {
+                *block = new.clone();
+            }
+        }
+        for (block, new) in state.rays.iter_mut().zip(&other.rays) {
+            if new.is_some() {
+                block.clone_from(new);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Merges the samples of all parts into `whole`. Describes missing samples in `missing`.
 fn merge_samples(
     parts: &[(String, PartialRender)],

@@ -2,7 +2,7 @@
 
 use super::control::RunLimit;
 use super::part::passes_of;
-use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
+use super::{Control, Job, PartError, PartialRender, RenderError, RenderOutcome, Shard};
 use crate::world::World;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -41,8 +41,29 @@ impl ProgressiveRender {
     ///
     /// See [`PartialRender::new`].
     pub fn new(world: &World, job: &Job) -> Result<Self, RenderError> {
-        let part = PartialRender::new(world, job, Shard::WHOLE)?;
-        Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })
+        Self::with_shard(world, job, Shard::WHOLE)
+    }
+
+    /// Creates an empty picture of which only one shard will be rendered here. The other shards
+    /// come from [`ProgressiveRender::absorb`].
+    ///
+    /// # Errors
+    ///
+    /// See [`PartialRender::new`].
+    pub fn with_shard(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
+        let part = PartialRender::new(world, job, shard)?;
+        Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, shard)), stopped: None, is_over: false })
+    }
+
+    /// Copies the blocks of another shard, which may be unfinished, into this picture. Blocks that
+    /// were absorbed before are replaced if the new ones have more samples.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`PartError`] if the other part belongs to a different picture or is not another
+    /// shard by tiles of the same division.
+    pub fn absorb(&mut self, other: &PartialRender) -> Result<(), PartError> {
+        self.part.absorb(other)
     }
 
     /// Renders the next pass. Returns `None` if the picture is finished or if the previous pass

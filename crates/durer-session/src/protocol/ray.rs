@@ -94,6 +94,9 @@ pub struct SceneNode {
     pub name: String,
     /// Position in the scene's text.
     pub place: Option<TextPosition>,
+    /// Number of the object in the list of [`super::SceneSummary`]; `None` for groups, transforms
+    /// and objects that are rendered as several.
+    pub object: Option<u32>,
     /// Number of the node's material.
     pub material: Option<u32>,
     /// Child nodes.

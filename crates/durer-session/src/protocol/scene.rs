@@ -80,8 +80,11 @@ pub struct TextPosition {
     pub column: u32,
     /// Byte offset of the start.
     pub start: u32,
-    /// Byte offset of the end, exclusive.
+    /// Byte offset of the end of the keyword, exclusive.
     pub end: u32,
+    /// Byte offset of the end of the statement's block, exclusive; equal to `end` if no block
+    /// follows the keyword.
+    pub block_end: u32,
 }
 
 /// Severity of a [`Finding`]: a note, a warning or an error.
@@ -197,6 +200,10 @@ pub struct CameraState {
     pub half_width: f64,
     /// Distance from the eye to the target.
     pub distance: f32,
+    /// True if straight lines in space appear as straight lines in the picture, as with a pinhole.
+    /// A point at (x, y, z) in the coordinates of `right`, `up` and `forward` is then shown at
+    /// (x, y) / (z `half_width`).
+    pub projects: bool,
     /// Fields of the camera.
     pub fields: Vec<FieldState>,
     /// Statement of the camera in the scene language.
@@ -221,6 +228,32 @@ pub struct FieldState {
     pub least: Option<f32>,
     /// Maximum value, if there is one.
     pub most: Option<f32>,
+    /// True if the value must be greater than `least`.
+    pub above_least: bool,
+    /// True if the value must be less than `most`.
+    pub below_most: bool,
+    /// True for a whole number.
+    pub whole: bool,
+    /// Possible values, if the value is a word; otherwise empty.
+    pub choices: Vec<String>,
+}
+
+/// A common mistake that a page can offer as a switch, with its description and its code.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct MistakeChoice {
+    /// Name of the mistake.
+    pub name: String,
+    /// Description in words.
+    pub description: String,
+    /// Correct code.
+    pub right: String,
+    /// Wrong code.
+    pub wrong: String,
+    /// Topic of the lecture that covers the mistake.
+    pub topic: String,
+    /// Values with which the mistake is tried; a single 0 if it has none.
+    pub values: Vec<f32>,
 }
 
 /// Description of a picture that is sent to a page, including its size, progress and timing.

@@ -24,6 +24,7 @@ fn typescript() -> String {
         SceneItem,
         CameraState,
         FieldState,
+        MistakeChoice,
         PictureInfo,
         FormulaRow,
         Segment,
@@ -68,8 +69,10 @@ fn answer_is_encoded_as_length_json_and_payload() {
     let answer = EventMessage { session: 3, id: 7, event: Event::Saved };
     let bytes = answer.encode(&[1, 2, 3]);
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
-    let read: EventMessage = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    assert_eq!(&bytes[4 + length..], [1, 2, 3]);
+    let (read, payload) = EventMessage::decode(&bytes).unwrap();
     assert_eq!((read.session, read.id), (3, 7));
     assert!(matches!(read.event, Event::Saved));
-    assert_eq!(&bytes[4 + length..], [1, 2, 3]);
+    assert_eq!(payload, [1, 2, 3]);
+    assert!(EventMessage::decode(&bytes[..length]).is_none());
 }

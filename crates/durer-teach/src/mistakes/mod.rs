@@ -23,6 +23,7 @@ mod tests;
 pub use buggy_tracer::BuggyTracer;
 pub use input::{Diagnosis, DiagnosisInput, Explanation};
 pub use path_bugs::PathBugs;
+pub use pictures::mistaken_picture;
 pub use table::{Formulas, MISTAKES, Mistake, Values, mistake_by_name};
 pub use variant::SceneVariant;
 

@@ -1,11 +1,13 @@
 //! Renders selected pixels of a scene variant.
 
 use super::bugs::{OutputBug, PixelOrder, RayCount};
-use super::{BuggyTracer, SceneVariant};
+use super::{BuggyTracer, Mistake, SceneVariant};
 use durer_image::Transfer;
 use durer_image::compare::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_render::render::{Job, sample_places};
+use durer_render::world::World;
 use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
+use durer_scene::scene::Scene;
 use rayon::prelude::*;
 
 /// Way in which the compared pictures are rendered and encoded: their size, samples, transfer curve
@@ -116,6 +118,25 @@ impl View<'_> {
             _ => eight(transfer, light),
         }
     }
+}
+
+/// Renders a scene with Whitted's method as a program with a mistake would write it, row by row
+/// from the top, encoded as sRGB. `mistake` is a row of the table and its value; `None` gives the
+/// correct picture. The crop of the job is ignored.
+pub fn mistaken_picture(scene: &Scene, world: &World, job: &Job, mistake: Option<(&Mistake, f32)>) -> Vec<[u8; 3]> {
+    let right = SceneVariant::new(scene, world.clone(), job.settings);
+    let pixels: Vec<(u32, u32)> = (0..job.height).flat_map(|y| (0..job.width).map(move |x| (x, y))).collect();
+    let mut view = View { job, scale: Scale::Display, transfer: Transfer::Srgb, max_value: 1.0 };
+    let mut wrong = right.clone();
+    if let Some((mistake, value)) = mistake {
+        (mistake.apply)(&mut wrong, value);
+    }
+    if wrong.output == OutputBug::Scaled {
+        let light = view.light(&right, &pixels);
+        view.max_value = light.iter().map(|light| light.max_element()).fold(f32::MIN_POSITIVE, f32::max);
+    }
+    let eight = |value: &Vec3| value.to_array().map(|v| (255.0 * v + 0.5) as u8);
+    view.picture(&wrong, &pixels).iter().map(eight).collect()
 }
 
 /// Converts a colour to grey with one of the formulas of [`OutputBug::Grey`].
