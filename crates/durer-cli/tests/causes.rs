@@ -87,6 +87,7 @@ fn put_files(folder: &TestFolder) {
     let cup: String =
         halves.lines().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, face)| format!("{face}\n")).collect();
     folder.write("cup.obj", format!("{corners}{cup}"));
+    folder.write("stray.obj", format!("{corners}v 5000 1 1\nv 5000 2 1\n{halves}f 1 9 10\n"));
     folder.write("bad.obj", format!("{corners}f 1 2 19\n"));
     let sheet =
         |uvs: &str| format!("v -2 0.2 0\nv -0.4 0.2 0\nv -0.4 1.8 0\nv -2 1.8 0\n{uvs}f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");

@@ -122,7 +122,57 @@ const CASES: &[Case] = &[
         &[("-0.5 0.5 4   0.5 0.5 4   0.5 -0.5 4   -0.5 -0.5 4", "-0.5 -0.5 4   0.5 -0.5 4   0.5 0.5 4   -0.5 0.5 4")],
         "lamp-turned",
     ),
+    ("rad", RADIANCE, &[("5 0.5 0.5 0.48", "5 178 26 26")], "color-range"),
+    ("ply", PLY, &[], ""),
+    (
+        "ply",
+        PLY,
+        &[("255 128 0\n1 0 0 255 128 0", "1 0 0\n1 0 0 1 0 0"), ("200 90 10\n0 0 1 200 90 10", "0 1 1\n0 0 1 1 1 1")],
+        "dark-colors",
+    ),
+    ("obj", OBJ, &[], ""),
+    (
+        "obj",
+        OBJ,
+        &[("v 0 2 0", "v 0 2 0\nv 50000 0 0\nv 50000 1 0\nv 50000 0 1"), ("f 1 2 3", "f 1 2 3\nf 6 7 8")],
+        "stray-points",
+    ),
 ];
+
+const PLY: &str = "ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0 255 128 0
+1 0 0 255 128 0
+0 1 0 200 90 10
+0 0 1 200 90 10
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+";
+
+const OBJ: &str = "v 1 0 0
+v 0 2 0
+v -1 0 0
+v 0 0 1
+v 0 0.5 2
+v 0.2 0.1 -1
+v 0.1 0.3 1
+f 1 2 3
+f 1 4 2
+f 3 2 5
+f 4 6 7
+";
 
 #[test]
 fn causes_in_models_are_reported_first_and_in_neutral_words() {

@@ -14,9 +14,10 @@ use super::report::Report;
 use super::{MeshFormat, without_quirks};
 use body::RowReader;
 use durer_diag::Diagnostics;
+use durer_image::decode_srgb;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
-use header::{Encoding, read_header};
+use header::{Encoding, Header, read_header};
 use lines::report_wrong_row;
 use order::report_wrong_order;
 use values::{AsciiValues, BinaryValues};
@@ -63,7 +64,23 @@ fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
         }
         Encoding::BigEndian => RowReader::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(elements),
     };
-    Some(MeshData { flat: header.flat, ..mesh? })
+    let mesh = MeshData { flat: header.flat, ..mesh? };
+    warn_about_dark_colors(&mesh, bytes, &header, report);
+    Some(mesh)
+}
+
+/// Warns if all colours are stored as bytes of 0 and 1, which are nearly black.
+fn warn_about_dark_colors(mesh: &MeshData, bytes: &[u8], header: &Header, report: &mut Report) {
+    let channels = || mesh.colors.iter().flat_map(|color| &color[..3]);
+    let is_dark = channels().all(|value| *value <= decode_srgb(1)) && channels().any(|value| *value > 0.0);
+    let mut properties = header.elements.iter().flat_map(|element| &element.properties);
+    let Some(red) = properties.find(|property| bytes[property.name.clone()].ends_with(b"red")).filter(|_| is_dark)
+    else {
+        return;
+    };
+    let warning = report.warning(red.name.clone(), "all colours are 0 or 1, but bytes range from 0 to 255");
+    warning.code = "dark-colors";
+    warning.help = Some("if the colours range from 0 to 1, declare them as `float`".into());
 }
 
 #[cfg(test)]

@@ -220,9 +220,20 @@ impl<'a> Xml<'a> {
         if let quick_xml::Error::IllFormed(events) = error
             && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found } = events
         {
-            let wrong = self.wrong(place, format!("`</{found}>` closes an element that is not open")).code("unclosed");
+            let is_open = |span: &Span| {
+                let rest = &self.text[(span.start as usize).saturating_sub(self.skipped)..];
+                let name = rest.trim_start_matches('<').strip_prefix(found.as_str());
+                name.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || "_-.:".contains(c)))
+            };
+            let message = match self.open.iter().any(is_open) {
+                true => format!("`</{found}>` comes before `</{expected}>`"),
+                false => format!("`</{found}>` closes an element that is not open"),
+            };
+            let wrong = self.wrong(place, message).code("unclosed");
             return match self.open.last() {
-                Some(open) => wrong.related(*open, format!("`{expected}` is open here")),
+                Some(open) => wrong
+                    .related(*open, format!("`{expected}` is open here"))
+                    .help(format!("close it with `</{expected}>`, or end its tag with `/>` if it has no content")),
                 None => wrong,
             };
         }
@@ -277,7 +288,8 @@ mod tests {
         for (text, place, words) in [
             ("", 0, "no elements"),
             ("words", 0, "no elements"),
-            ("<a><b></a>", 6, "closes an element that is not open"),
+            ("<a><b></a>", 6, "`</a>` comes before `</b>`"),
+            ("<ab><b></a>", 7, "`</a>` closes an element that is not open"),
             ("<a><b/>", 1, "not closed"),
             ("<a/><b/>", 5, "the second"),
             ("<a x=1/>", 5, "quotes"),

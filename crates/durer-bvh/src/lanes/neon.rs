@@ -215,15 +215,15 @@ impl Lanes for Neon {
     #[inline(always)]
     fn min_as_int(self, a: Pair, b: Pair) -> Pair {
         proven! {
-            let sooner = |a, b| vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
-            Pair(sooner(a.0, b.0), sooner(a.1, b.1))
+            let min = |a, b| vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+            Pair(min(a.0, b.0), min(a.1, b.1))
         }
     }
     #[inline(always)]
     fn max_as_int(self, a: Pair, b: Pair) -> Pair {
         proven! {
-            let later = |a, b| vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
-            Pair(later(a.0, b.0), later(a.1, b.1))
+            let max = |a, b| vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+            Pair(max(a.0, b.0), max(a.1, b.1))
         }
     }
     #[inline(always)]

@@ -131,9 +131,9 @@ impl Lanes for Simd128 {
     type Triple = [f64; 3];
 
     operations! {
-        sooner(a, b) = i32x4_min(a, b);
-        later(a, b) = i32x4_max(a, b);
-        before(a, b) = i32x4_lt(a, b);
+        min_as_int(a, b) = i32x4_min(a, b);
+        max_as_int(a, b) = i32x4_max(a, b);
+        lt_as_int(a, b) = i32x4_lt(a, b);
     }
 
     #[inline(always)]

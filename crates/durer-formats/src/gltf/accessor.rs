@@ -234,6 +234,15 @@ impl Accessor {
         self.view.as_ref().and_then(|view| view.stride).unwrap_or(dense)
     }
 
+    /// Returns true if bytes are probably 16-bit numbers: the accessor is the first half of its view,
+    /// and every second byte is 0.
+    pub fn holds_shorts(&self) -> bool {
+        let Some(view) = self.view.as_ref().filter(|_| self.sparse.is_none() && self.offset == 0) else { return false };
+        let bytes = view.bytes();
+        let is_half = bytes.len() == (2 * self.count).next_multiple_of(4) || bytes.len() == 2 * self.count;
+        self.count > 2 && is_half && bytes.as_chunks::<2>().0.iter().all(|pair| pair[1] == 0)
+    }
+
     /// Checks that the accessor fits into its buffer view.
     fn check(&self, at: &JsonRef) -> Option<()> {
         let Some(view) = &self.view else { return Some(()) };

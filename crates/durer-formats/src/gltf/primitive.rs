@@ -258,6 +258,16 @@ impl Model<'_> {
         self.charge(accessor.count, 4, &indices)?;
         self.count_kept(accessor.count, 4, &indices)?;
         let order = accessor.integers();
+        if accessor.component == ComponentType::U8 && accessor.holds_shorts() {
+            indices.warning(
+                "INDICES_LOOK_LIKE_SHORTS",
+                format!(
+                    "the {} indices are declared as bytes and use half of their buffer view, in which every second \
+                     byte is 0: they are probably 16-bit numbers (componentType 5123)",
+                    accessor.count
+                ),
+            );
+        }
         let most = u32::MAX >> (32 - 8 * accessor.component.size());
         let greatest = order.par_iter().copied().max().unwrap_or(0);
         if greatest == most {

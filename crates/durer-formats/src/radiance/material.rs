@@ -141,6 +141,17 @@ impl Reader<'_> {
         let value = |i: usize| primitive.number(i).unwrap_or(0.0).max(0.0);
         let both = |i: usize| [value(i); 2];
         let color = primitive.color(0) * above.tint;
+        let reflects = !matches!(kind, "light" | "illum" | "glow" | "spotlight" | "mist" | "interface" | "dielectric");
+        if reflects && !counts.is_empty() && color.max_element() > 1.0 {
+            let bytes = primitive.color(0) / 255.0;
+            let mended = match color.max_element() > 2.0 {
+                true => format!(": if it is in bytes, write `{:.3} {:.3} {:.3}`", bytes.x, bytes.y, bytes.z),
+                false => String::new(),
+            };
+            let message =
+                format!("the colour of `{kind}` is above 1, so it reflects more light than it receives{mended}");
+            report.warn_once("color-range", at, message);
+        }
         let instead = |what: &str| report.unsupported_once(at, format!("`{kind}` has no counterpart: {what}"));
         if matches!(kind, "plastic" | "plastic2") && value(3) > 0.0 {
             let roughness = if kind == "plastic" { both(4) } else { [value(4), value(5)] };

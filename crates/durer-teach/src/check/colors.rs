@@ -523,14 +523,17 @@ pub(super) fn no_coordinates(scene_probe: &SceneProbe) -> Vec<Finding> {
     let meshes_only = scene_probe.world().rules().has(Quirk::MeshTextures);
     let textured = phongs(scene_probe).filter(|(_, _, phong)| phong.texture.is_some());
     let mut findings = Vec::new();
-    for (i, material, _) in textured {
+    for (i, material, phong) in textured {
         let bare = scene_probe.hits().find(|(_, hit)| hit.material == i && !hit.has_uv);
         if let Some((_, hit)) = bare {
             let name = scene_probe.object(hit.object);
             let diagnostic =
                 Diagnostic::warning(format!("material {i} has a texture, but the {name} has no texture coordinates"))
                     .related(scene_probe.object_span(hit.object), "uses the material")
-                    .effect("the texture is invisible; `diffuseColor` is used instead")
+                    .effect(match phong.principled {
+                        Some(_) => "the texture is invisible; `baseColor` is used instead",
+                        None => "the texture is invisible; `diffuseColor` is used instead",
+                    })
                     .help(match (&scene_probe.world().objects()[hit.object as usize].geometry, meshes_only) {
                         (Geometry::Mesh(_), _) => "add `vt` lines to the mesh file, and write faces as `f 1/1 2/2 3/3`",
                         (_, true) => {

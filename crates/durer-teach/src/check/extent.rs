@@ -57,7 +57,7 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
         number(size)
     ))
     .effect(if empty && size < MIN_PIXELS {
-        "every ray misses the objects, so the picture shows only the background"
+        "at most a few rays hit the objects, so the picture shows little but the background"
     } else {
         "the objects are hardly visible"
     });

@@ -193,11 +193,60 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]
 }
 
+/// Roughness below which a metal reflects its surroundings and shows hardly any highlight.
+const MIRROR_ROUGHNESS: f32 = 0.25;
+
+/// Radiance below which smooth metal shows only the faint edge of a highlight.
+const DIM: f32 = 0.01;
+
+/// Reports smooth metal in black surroundings, with path tracing.
+fn no_surroundings(scene_probe: &SceneProbe) -> Option<Finding> {
+    let is_metal = |seen: &ProbeHit| match &scene_probe.world().materials()[seen.material as usize] {
+        Material::Phong(phong) => phong.principled.as_ref().is_some_and(|own| {
+            let layers = &own.definition;
+            layers.base_metalness > 0.9
+                && layers.specular_roughness < MIRROR_ROUGHNESS
+                && layers.emission_luminance == 0.0
+        }),
+        Material::Mix(..) => false,
+    };
+    let (mut all, mut dark, mut first) = (0, 0, None);
+    for (probe, color) in scene_probe.lit_probes() {
+        let Some(hit) = probe.hit.as_ref() else {
+            // Surroundings that are visible can also be reflected.
+            if color.max_element() > BLACK {
+                return None;
+            }
+            continue;
+        };
+        all += 1;
+        if is_metal(hit) && color.max_element() < DIM {
+            dark += 1;
+            first = first.or(Some(hit.material));
+        }
+    }
+    // The rest may show highlights of lights.
+    if dark == 0 || dark * 4 < all * 3 {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning("only smooth metal is visible, and it has nothing to reflect")
+        .effect("metal has no colour of its own: it shows its surroundings, which are black")
+        .help(
+            "add an environment, a bright object or an area light to reflect, or raise the roughness; a point light \
+             cannot be seen in a mirror",
+        );
+    let span = scene_probe.input.scene.materials.get(first? as usize).map(|written| written.span);
+    Some(Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true))
+}
+
 /// Reports mirrors that have nothing to reflect because only mirrors are visible and their
 /// surroundings are black.
 pub(super) fn nothing_mirrored(scene_probe: &SceneProbe) -> Vec<Finding> {
-    if scene_probe.is_physical() || scene_probe.input.job.settings.bounces == 0 {
+    if scene_probe.input.job.settings.bounces == 0 {
         return Vec::new();
+    }
+    if scene_probe.is_physical() {
+        return no_surroundings(scene_probe).into_iter().collect();
     }
     let world = scene_probe.world();
     let mirror = |seen: &ProbeHit| match &world.materials()[seen.material as usize] {

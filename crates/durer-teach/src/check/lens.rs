@@ -36,6 +36,25 @@ fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     scene_probe.hits().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
 }
 
+/// Reports a pinhole that is so large that everything visible is blurred.
+fn large_hole(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Camera::Pinhole(camera) = scene_probe.world().camera() else { return Vec::new() };
+    let frame = scene_probe.world().camera_frame();
+    let depths = scene_probe.hits().map(|(probe, hit)| hit.t * probe.ray.dir.dot(frame.forward)).filter(|z| *z > 0.0);
+    // Similar triangles: a point at the distance z makes a disc of this diameter on the film.
+    let width = 2.0 * camera.film_distance * frame.half_width as f32;
+    let mut blurs: Vec<f32> = depths.map(|z| camera.hole * (z + camera.film_distance) / z / width).collect();
+    blurs.sort_by(f32::total_cmp);
+    let Some(&least) = blurs.first().filter(|least| **least > MAX_BLUR) else { return Vec::new() };
+    let sharp = number(camera.hole * 0.005 / blurs[blurs.len() / 2]);
+    let span = scene_probe.input.scene.camera_span;
+    let diagnostic = Diagnostic::warning(format!("the `hole` of {} is too large", number(camera.hole)))
+        .effect(format!("every point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
+        .help(format!("`hole` is the diameter in world units: write, for example, `hole {sharp}`"))
+        .fix_at(scene_probe.field_span(span, &["hole"]), sharp);
+    vec![Finding::from(scene_probe.at_value(diagnostic, span, &["hole"])).affecting_whole_picture(true)]
+}
+
 /// Reports a lens that blurs everything visible.
 pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
@@ -68,7 +87,7 @@ pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports an aperture that is larger than that of any lens and blurs everything except one plane.
 pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
+    let Camera::ThinLens(camera) = scene_probe.world().camera() else { return large_hole(scene_probe) };
     let all = blurs(scene_probe, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < MAX_SHARP_BLUR).count();
     // If the aperture fits the distance of most objects, the focus distance is wrong instead.

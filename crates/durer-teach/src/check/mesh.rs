@@ -7,7 +7,7 @@ use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::dialect::Quirk;
-use durer_scene::math::Vec3;
+use durer_scene::math::{Aabb, Vec3};
 
 /// Fraction of zero-area triangles above which they cannot be only the poles of a surface of
 /// revolution.
@@ -78,6 +78,64 @@ pub(super) fn holes(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic));
     }
     findings
+}
+
+/// Ratio of the distance of stray vertices to the size of the rest of their mesh.
+const STRAY_DISTANCE: f32 = 50.0;
+/// Minimum number of the other vertices per stray vertex.
+const STRAY_SHARE: usize = 2;
+
+/// Reports meshes that have a few vertices far away from all others.
+pub(super) fn stray_points(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let models = models(scene_probe);
+    let all = scene_probe.meshes().iter().chain(&models);
+    let say = |mesh: &MeshFile| {
+        let (strays, box_of_rest, far) = strays(&mesh.data.positions)?;
+        let message = format!(
+            "{} of `{}` far from the others, for example at {}",
+            counted(strays, "vertex is", "vertices are"),
+            mesh.name.path,
+            vector(far)
+        );
+        let diagnostic = Diagnostic::warning(message)
+            .at(mesh.name.span)
+            .effect(format!(
+                "the other {} vertices fill a box of only {}: in a picture of everything, they are a dot",
+                mesh.data.positions.len() - strays,
+                vector(box_of_rest.size())
+            ))
+            .help("check the coordinates of these vertices in the file, such as a missing decimal point or minus sign");
+        Some(Finding::from(diagnostic))
+    };
+    all.filter_map(say).take(super::finding::MAX_PER_KIND).collect()
+}
+
+/// Returns the number of vertices that are far from most, the bounding box of the others, and one
+/// of the vertices.
+fn strays(positions: &[Vec3]) -> Option<(usize, Aabb, Vec3)> {
+    for axis in 0..3 {
+        let mut values: Vec<f32> = positions.iter().map(|position| position[axis]).collect();
+        values.sort_by(f32::total_cmp);
+        let Some(gap) = (1..values.len()).max_by(|&a, &b| {
+            let gap = |i: usize| values[i] - values[i - 1];
+            gap(a).total_cmp(&gap(b))
+        }) else {
+            continue;
+        };
+        let (below, width) = (gap, values[gap] - values[gap - 1]);
+        let is_above = below * 2 > values.len();
+        let strays = if is_above { values.len() - below } else { below };
+        if strays * STRAY_SHARE >= values.len() {
+            continue;
+        }
+        let is_stray = |position: &Vec3| (position[axis] >= values[gap]) == is_above;
+        let rest = positions.iter().filter(|position| !is_stray(position));
+        let rest = rest.fold(Aabb::EMPTY, |all, position| all.union_point(*position));
+        if width > STRAY_DISTANCE * rest.size().length() && rest.size() != Vec3::ZERO {
+            return Some((strays, rest, *positions.iter().find(|position| is_stray(position))?));
+        }
+    }
+    None
 }
 
 /// Reports flat glass objects, which have no interior.

@@ -80,6 +80,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("light-twice", &["too-bright"]),
     ("light-divides", &["not-finite"]),
     ("no-falloff", &["not-finite", "light-divides"]),
+    ("stray-points", &["too-small", "all-missed", "one-color", "out-of-scale", "too-dark", "holes"]),
     ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "light-blocked", "upside-down"]),
     ("hidden-behind", &["upside-down", "light-behind", "light-blocked"]),
     ("degenerate-mesh", &["seen-from-behind"]),

@@ -54,12 +54,13 @@ checks! {
     "clipped": "clip distances that cut away everything in the picture", clipping::clipped;
     "camera-away": "a camera that looks past everything", view::looks_elsewhere;
     "up-parallel": "a camera whose `up` is parallel to its `direction`", reported;
+    "stray-points": "a few vertices of a mesh far away from all others", mesh::stray_points;
     "too-small": "objects that together are too small in the picture", extent::too_small;
     "too-narrow": "a picture that shows a tiny part of the scene", extent::too_narrow;
     "no-surface": "a quadric whose equation has no real solution", quadrics::no_surface;
     "empty-solid": "an empty solid or grid", objects::empty_solid;
     "idle-part": "a part of a solid without effect", solid::part_without_effect;
-    "wide-aperture": "an aperture that is too large for a lens", lens::wide_aperture;
+    "wide-aperture": "an aperture or a pinhole that is too large", lens::wide_aperture;
     "out-of-focus": "a lens that focuses where there is nothing", lens::out_of_focus;
     "eyes-apart": "eyes that are too far apart", lens::eyes_apart;
     "hidden-behind": "an object that hides all others, or most of the picture", hidden::hidden_behind;
