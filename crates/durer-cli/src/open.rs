@@ -7,7 +7,8 @@ use crate::report;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::world::World;
-use durer::{LoadOptions, LoadedScene, load};
+use durer::{LoadOptions, LoadedScene, load, load_text};
+use std::io::Read;
 use std::path::Path;
 
 /// A scene that was read and compiled for a command line, with the files that it came from.
@@ -28,6 +29,30 @@ pub struct ParsedInput {
     quiet: bool,
 }
 
+/// File name that stands for standard input or standard output.
+pub const STREAM: &str = "-";
+
+/// Reads a scene file, or a scene from standard input if `path` is `-`. Files to which the latter
+/// refers are in the current folder.
+fn load_file(
+    path: &Path,
+    options: &LoadOptions,
+    files: &mut Files,
+    diagnostics: &mut Diagnostics,
+) -> Result<Option<LoadedScene>, Failure> {
+    if path != Path::new(STREAM) {
+        return load(path, options, files, diagnostics).map_err(report::unreadable);
+    }
+    let limit = options.memory.unwrap_or(u64::MAX);
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|error| anyhow::anyhow!("cannot read standard input: {error}"))?;
+    if bytes.len() as u64 > limit {
+        return Err(anyhow::anyhow!("the scene on standard input does not fit into memory; see `--memory`").into());
+    }
+    Ok(load_text(Path::new("standard-input"), bytes.into(), options, files, diagnostics))
+}
+
 /// Reads a scene without compiling it.
 pub fn read(
     path: &Path,
@@ -35,9 +60,11 @@ pub fn read(
     quiet: bool,
     registry: &mut FileRegistry,
 ) -> Result<ParsedInput, Failure> {
-    registry.register_input(path)?;
+    if path != Path::new(STREAM) {
+        registry.register_input(path)?;
+    }
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    match load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)? {
+    match load_file(path, options, &mut files, &mut diagnostics)? {
         Some(loaded) => Ok(ParsedInput { loaded, files, diagnostics, quiet }),
         None => {
             report::print(&files, &diagnostics, quiet);
@@ -88,6 +115,7 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
         allow_outside: args.allow_outside,
         assets: args.assets.clone(),
         memory: args.memory.bytes(),
+        placement: args.placement.placement(),
         scene_defaults: args.scene_defaults.scene_defaults(),
         ..LoadOptions::default()
     }

@@ -8,10 +8,12 @@ use crate::display::DisplayArgs;
 use crate::scene_defaults::SceneDefaultsArgs;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use durer::CameraPlacement;
 use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::AOVS;
+use durer::math::Vec3;
 use durer::options::memory::Memory;
-use durer::options::{compat, crop, doc};
+use durer::options::{compat, crop, doc, vector};
 use durer::render::Shard;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -35,7 +37,33 @@ pub struct SceneArgs {
     #[arg(long, default_value = "80%", hide_default_value = true, value_name = "SIZE", value_parser = Memory::parse, help = doc("memory"))]
     pub memory: Memory,
     #[command(flatten)]
+    pub placement: PlacementArgs,
+    #[command(flatten)]
     pub scene_defaults: SceneDefaultsArgs,
+}
+
+/// Options that place the camera in any scene
+#[derive(Args)]
+#[command(next_help_heading = "Camera")]
+pub struct PlacementArgs {
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, help = doc("eye"))]
+    pub eye: Option<Vec3>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, help = doc("target"))]
+    pub target: Option<Vec3>,
+    #[arg(long, value_name = "DEGREES", value_parser = fov, help = doc("fov"))]
+    pub fov: Option<f32>,
+}
+
+fn fov(text: &str) -> Result<f32, String> {
+    let fov = text.parse().ok().filter(|fov| (f32::MIN_POSITIVE..180.0).contains(fov));
+    fov.ok_or_else(|| "expected degrees, more than 0 and less than 180".into())
+}
+
+impl PlacementArgs {
+    /// Converts the options to those of the library.
+    pub fn placement(&self) -> CameraPlacement {
+        CameraPlacement { eye: self.eye, target: self.target, fov: self.fov }
+    }
 }
 
 /// Options for rendering a picture

@@ -9,11 +9,20 @@ use durer::check::picture::PictureScan;
 use durer::image::{Content, Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
 use durer::render::{BandsError, PartialRender, Rendered};
 use std::cell::RefCell;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Returns the image format for a file name.
+/// File that stands for standard output.
+pub const STANDARD_OUTPUT: &str = "/dev/stdout";
+
+/// Returns the image format for a file name. Pictures on standard output are PNG files.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {
+    if path == Path::new(STANDARD_OUTPUT) {
+        if io::stdout().is_terminal() {
+            return Err(invalid_input("standard output is a terminal: redirect it to a file or a program"));
+        }
+        return Ok(format_for("picture.png").map_err(anyhow::Error::from)?);
+    }
     format_for(path).map_err(|error| invalid_input(error.to_string()))
 }
 

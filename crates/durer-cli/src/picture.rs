@@ -3,9 +3,10 @@
 use crate::autosave::Autosave;
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
+use crate::open::STREAM;
 use crate::open::{load_options, read};
 use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
-use crate::output::{Target, with_suffix};
+use crate::output::{STANDARD_OUTPUT, Target, with_suffix};
 use crate::report::rejected;
 use crate::stats::StageTimer;
 use crate::terminal::{print_error_line, print_line};
@@ -66,8 +67,13 @@ pub struct Pixel {
 
 /// Returns the file for the picture, which is the one given by `--output` or the default.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
-    let default_name = || with_suffix(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
-    args.output.clone().unwrap_or_else(default_name)
+    let stem =
+        if args.scene == Path::new(STREAM) { "picture".as_ref() } else { args.scene.file_stem().unwrap_or_default() };
+    match &args.output {
+        Some(output) if output == Path::new(STREAM) => STANDARD_OUTPUT.into(),
+        Some(output) => output.clone(),
+        None => with_suffix(Path::new(stem), ".png"),
+    }
 }
 
 /// Renders a scene and writes its pictures.

@@ -3,6 +3,7 @@
 
 use crate::failure::{Failure, invalid_input};
 use crate::frames::FramesArgs;
+use crate::open::STREAM;
 use crate::options::RenderArgs;
 use crate::picture::{Pixel, WatchState, render_picture};
 use crate::values::pixel;
@@ -25,13 +26,15 @@ use std::path::Path;
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
   durer render room.txt -o room.png --show luminance,illuminance --light-range 10 100000 --light-log
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
+  cat scene.txt | durer render - -o - > picture.png
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
 SCENE is a file in the course's language or a model: glTF, GLB, USD, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model
 without a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words of the language.
 
-The extension of PICTURE selects the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures are written as layers of
-one EXR file, or as separate files: picture.depth.png and so on.
+The extension of PICTURE selects the format: png, jpg, webp, exr, hdr, tga, bmp, ppm, pfm. Several pictures are written as
+layers of one EXR file, or as separate files: picture.depth.png and so on. SCENE `-` is read from standard input, and
+`-o -` writes a PNG file to standard output.
 
 Long renders save their work to PICTURE.part at intervals. --resume continues from this file, and --restart discards it;
 without either option, durer stops instead of overwriting it. The file is removed when the picture is complete. On Ctrl-C,
@@ -63,6 +66,9 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
                 ));
             }
             frames::run(&mut command.render, frames, moves)
+        }
+        (None, true) if args.scene == Path::new(STREAM) => {
+            Err(invalid_input("--watch needs a file, not standard input"))
         }
         (None, true) => {
             // Each change starts a new picture, so unfinished work is not saved.

@@ -9,7 +9,7 @@ use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, di
 /// Arguments of `durer words`.
 #[derive(clap::Args)]
 pub struct WordsArgs {
-    /// Word to look up [default: list every word that begins a block]
+    /// Word of the language, or a term such as `glass` or `area light`, to look up [default: list every word that begins a block]
     pub word: Option<String>,
     /// Show only words of this dialect
     #[arg(long)]
@@ -31,6 +31,13 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     let in_blocks: Vec<(&Entry, &FieldEntry)> =
         all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
     if begun.is_empty() && in_blocks.is_empty() {
+        let found = mentions(&all, word);
+        if !found.is_empty() {
+            print_line(&format!("`{word}` is not a word of the language. These words are about it:"));
+            found.iter().for_each(|row| print_line(row));
+            print_line("\n`durer words WORD` describes a word and its fields.");
+            return Ok(());
+        }
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
         let suggestion = did_you_mean(word, all_words());
         let suggestion =
@@ -50,6 +57,67 @@ fn dialect_by_name(name: &str) -> Result<Dialect, Failure> {
     let known = || Dialect::ALL.map(Dialect::name).join(", ");
     Dialect::from_name(name)
         .ok_or_else(|| invalid_input(format!("`{name}` is not a dialect; known dialects: {}", known())))
+}
+
+/// Synonyms of terms that users look up and that the manual does not use.
+const SYNONYMS: &[(&str, &[&str])] = &[
+    ("glass", &["refract", "transmission", "transparent"]),
+    ("refraction", &["refract"]),
+    ("lens", &["aperture", "focus"]),
+    ("dof", &["focus", "aperture"]),
+    ("depth of field", &["focus", "aperture"]),
+    ("ies", &["photometric", "ies"]),
+    ("area light", &["emission", "emits"]),
+    ("lamp", &["light"]),
+    ("emission", &["emission", "emits"]),
+    ("glow", &["emission", "emits"]),
+    ("mirror", &["reflect"]),
+    ("metal", &["metal"]),
+    ("shiny", &["exponent", "roughness"]),
+    ("hdri", &["environment"]),
+    ("skybox", &["environment"]),
+    ("sun", &["sun"]),
+    ("fog", &["fog", "medium", "scatter"]),
+    ("smoke", &["fog", "medium", "scatter"]),
+    ("csg", &["difference", "intersection", "union"]),
+    ("boolean", &["difference", "intersection", "union"]),
+    ("model", &["mesh"]),
+    ("transparency", &["transparent", "opacity"]),
+    ("bump", &["bump", "normal map"]),
+    ("size", &["size", "scale"]),
+];
+
+/// Returns a row for each word whose documentation mentions a term or one of its synonyms. Words
+/// whose name contains the term come first.
+fn mentions(all: &[Entry], term: &str) -> Vec<String> {
+    let term = term.to_lowercase();
+    if term.len() < 3 {
+        return Vec::new();
+    }
+    let synonyms = SYNONYMS.iter().find(|(word, _)| *word == term).map_or(&[][..], |(_, synonyms)| synonyms);
+    let terms: Vec<&str> = std::iter::once(term.as_str()).chain(synonyms.iter().copied()).collect();
+    let has = |text: &str| {
+        let text = text.to_lowercase();
+        terms.iter().any(|term| text.contains(term))
+    };
+    let first = |doc: &str| doc.split_inclusive(". ").next().unwrap_or_default().trim().to_string();
+    let mut rows: Vec<(bool, String, String)> = Vec::new();
+    for entry in all {
+        let name = entry.keywords[0].0;
+        if has(name) || has(&entry.doc) {
+            rows.push((!has(name), name.into(), first(&entry.doc)));
+        }
+        for field in &entry.fields {
+            let Some((word, _)) = field.words.first() else { continue };
+            if has(word) || has(&field.doc) {
+                rows.push((!has(word), format!("{name}: {word}"), first(&field.doc)));
+            }
+        }
+    }
+    rows.sort_by_key(|(is_doc, ..)| *is_doc);
+    rows.truncate(24);
+    let width = rows.iter().map(|(_, name, _)| name.chars().count()).max().unwrap_or(0);
+    rows.into_iter().map(|(_, name, doc)| format!("  {name:<width$}  {doc}")).collect()
 }
 
 fn list(all: &[Entry], dialect: Option<Dialect>) {

@@ -81,7 +81,8 @@ fn every_format_is_written_and_read_back() {
             let name = format!("picture.{extension}");
             let output = folder.expect_exit(0, &format!("render scene.txt --size 13x7 -o {name}"));
             assert_eq!(output.out, format!("wrote {name}\n"));
-            if format.depth == durer::image::Depth::EightBit {
+            // JPEG is lossy; see `lossy_pictures_are_nearly_those_of_png`.
+            if format.depth == durer::image::Depth::EightBit && format.name != "JPEG" {
                 eight_bit.push(folder.image8(&name));
             } else {
                 let image = folder.image(&name);
@@ -181,5 +182,53 @@ fn existing_link_is_kept() {
         folder.expect_exit(0, "render scene.txt --size 3x3 -o link.png");
         assert!(folder.path("link.png").is_symlink());
         assert_eq!(folder.image8("real.png").width, 3);
+    }
+}
+
+#[test]
+fn scenes_and_pictures_pass_through_pipes() {
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "render scene.txt -o file.png --size 37x29");
+    let piped = folder.shell("\"$DURER\" render - -o - --size 37x29 < scene.txt > piped.png");
+    assert_eq!((piped.out.as_str(), folder.bytes("piped.png")), ("", folder.bytes("file.png")), "{}", piped.err);
+    let named = folder.shell("\"$DURER\" render - --size 37x29 < scene.txt");
+    assert!(named.out.contains("wrote picture.png"), "{} {}", named.out, named.err);
+    let broken = folder.shell("echo 'Sphere {' | \"$DURER\" render - -o x.png");
+    assert!(broken.err.contains("standard-input:") && !folder.path("x.png").exists(), "{}", broken.err);
+    folder.expect_failure(2, "render - --watch", &["standard input"]);
+}
+
+#[test]
+fn lossy_pictures_are_nearly_those_of_png() {
+    let folder = TestFolder::new();
+    for ending in ["png", "webp", "jpg"] {
+        folder.expect_exit(0, &format!("render scene.txt -o a.{ending} --size 64x48"));
+    }
+    let [png, webp, jpg] = ["a.png", "a.webp", "a.jpg"].map(|name| folder.image8(name).pixels);
+    assert_eq!(png, webp);
+    let differences = png.as_flattened().iter().zip(jpg.as_flattened()).map(|(a, b)| u32::from(a.abs_diff(*b)));
+    assert!(differences.sum::<u32>() < 3 * 3 * 64 * 48);
+}
+
+#[test]
+fn options_place_the_camera_of_any_scene() {
+    let folder = TestFolder::new();
+    let text = "PerspectiveCamera { center 0 1 9 direction 0 0 -1 up 0 1 0 angle 30 }
+        Lights { DirectionalLight { direction -1 -2 -1 color 1 1 1 } }
+        Materials { PhongMaterial { diffuseColor 1 0.5 0.2 } }
+        Group { MaterialIndex 0 Sphere { center 0 1 0 radius 1 } Sphere { center 2 0.5 1 radius 0.5 } }";
+    folder.write("a.txt", text);
+    folder.write("b.txt", text.replace("center 0 1 9 direction 0 0 -1", "center 4 3 5 direction -4 -2 -5"));
+    folder.expect_exit(0, "render b.txt -o b.pfm --size 40x30");
+    folder.expect_exit(0, "render a.txt -o a.pfm --size 40x30 --eye 4,3,5 --target 0,1,0");
+    assert_eq!(folder.bytes("a.pfm"), folder.bytes("b.pfm"));
+    // Without a target, the eye looks at the center of the scene, so the scene stays visible.
+    folder.expect_exit(0, "render a.txt -o c.pfm --size 40x30 --eye -9,-1,2 --fov 40");
+    assert!(folder.image("c.pfm").pixels.iter().any(|pixel| pixel.x > 0.1));
+    folder.expect_failure(2, "render a.txt --eye 1,1,1 --target 1,1,1", &["--target"]);
+    for (option, word) in
+        [("--eye 1,2", "three numbers"), ("--eye 1,2,inf", "three numbers"), ("--fov 180", "less than 180")]
+    {
+        folder.expect_failure(2, &format!("render a.txt {option}"), &[word]);
     }
 }

@@ -102,3 +102,25 @@ fn words_are_looked_up() {
     folder.expect_failure(2, "words Torus --dialect f04", &["the dialect `f04`"]);
     folder.expect_failure(2, "words --dialect f99", &["f99", "f23"]);
 }
+
+#[test]
+fn terms_lead_to_words() {
+    let folder = TestFolder::new();
+    for (term, word) in [
+        ("glass", "refractionIndex"),
+        ("lens", "aperture"),
+        ("ies", "PhotometricLight"),
+        ("area light", "emissionLuminance"),
+        ("refraction", "indexOfRefraction"),
+        ("depth of field", "focusDistance"),
+        ("csg", "Difference"),
+        ("hdri", "environment"),
+    ] {
+        let mut command = folder.command("words");
+        let output = command.arg(term).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && text.contains(word), "{term}: {text}");
+    }
+    folder.expect_failure(2, "words Spehre", &["did you mean `Sphere`?"]);
+    folder.expect_failure(2, "words xyzzyx", &["lists them all"]);
+}

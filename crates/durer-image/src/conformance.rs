@@ -34,6 +34,14 @@ fn what_is_written_is_read_back() {
                         if kind == LayerKind::Data && transfer == Transfer::Srgb { Transfer::Linear } else { transfer };
                     let expected: Vec<_> = image.pixels.iter().map(|&pixel| curve.encode_pixel(pixel)).collect();
                     let back = read8(&bytes, &name(format)).unwrap();
+                    if format.name == "JPEG" {
+                        let values = back.pixels.as_flattened().iter().zip(expected.as_flattened());
+                        let differences: Vec<u8> = values.map(|(a, b)| a.abs_diff(*b)).collect();
+                        let sum: u32 = differences.iter().map(|difference| u32::from(*difference)).sum();
+                        assert!(sum < 4 * differences.len() as u32, "{differences:?}");
+                        assert_eq!((back.width, back.height), (9, 3));
+                        continue;
+                    }
                     assert_eq!((back.width, back.height, back.pixels), (9, 3, expected), "{}", format.name);
                 }
                 Depth::Float => {
@@ -72,7 +80,7 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
         let back = read(&out, &name(format)).unwrap();
         // `read` discards alpha. Formats with 8-bit alpha store colours that are not premultiplied.
-        let straight = ["PNG", "TGA"].contains(&format.name);
+        let straight = ["PNG", "TGA", "WebP"].contains(&format.name);
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
         assert_eq!(back.pixels[1], Vec3::ZERO, "{}", format.name);
@@ -100,7 +108,8 @@ fn layers_that_do_not_fit_are_refused() {
 
 #[test]
 fn no_prefix_is_a_picture() {
-    for format in FORMATS {
+    // A truncated JPEG is shown as far as it goes, as in web browsers.
+    for format in FORMATS.iter().filter(|format| format.name != "JPEG") {
         let bytes = written(format, LayerKind::Color, Transfer::Linear, &sample());
         for end in 0..bytes.len() {
             // The last bytes of a PNG file, which are its end chunk, may be missing.

@@ -31,7 +31,7 @@ use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::panics::catch_panic;
 use durer_diag as diag;
-#[cfg(feature = "codecs")]
+#[cfg(any(feature = "codecs", feature = "jpeg", feature = "webp"))]
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -50,14 +50,14 @@ pub static FORMATS: &[Format] = &[
     exr::FORMAT,
     #[cfg(feature = "codecs")]
     hdr::FORMAT,
-];
-
-/// Formats that can be read but not written.
-static READ_ONLY: &[Format] = &[
     #[cfg(feature = "jpeg")]
     jpeg::FORMAT,
     #[cfg(feature = "webp")]
     webp::FORMAT,
+];
+
+/// Formats that can be read but not written.
+static READ_ONLY: &[Format] = &[
     #[cfg(feature = "ktx2")]
     ktx2::FORMAT,
 ];
@@ -255,7 +255,7 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
 
 /// Returns the 8-bit red, green, and blue values of a picture, starting with the top row. The
 /// values are computed in parallel.
-#[cfg(feature = "codecs")]
+#[cfg(any(feature = "codecs", feature = "jpeg", feature = "webp"))]
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
     const STEP: usize = 1 << 14;
     let (strip, pixels) = (RowLayout { alpha: false, ..RowLayout::of(layer, options) }, &layer.image.pixels);

@@ -38,6 +38,8 @@
 //! defines the options of a render and their defaults ([`job`]), creates reports as JSON
 //! ([`report`]), and re-exports the modules of the other crates.
 
+#[cfg(feature = "load")]
+mod camera_placement;
 pub mod compiled;
 pub mod error;
 #[cfg(all(feature = "fs", any(test, feature = "testing")))]
@@ -52,6 +54,8 @@ pub mod prelude;
 pub mod renderer;
 pub mod report;
 
+#[cfg(feature = "load")]
+pub use camera_placement::CameraPlacement;
 #[cfg(feature = "fs")]
 pub use compiled::open;
 pub use compiled::{CompileScene, CompiledScene};

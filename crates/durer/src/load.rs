@@ -1,6 +1,7 @@
 //! Loading of scenes from files. The loader detects the format and the dialect, applies the rules
 //! of the dialect, and finds assets.
 
+use crate::camera_placement::CameraPlacement;
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_formats::Decoder;
@@ -44,6 +45,8 @@ pub struct LoadOptions {
     pub in_memory: Vec<(String, Arc<[u8]>)>,
     /// Camera, light and ground for models that have none.
     pub scene_defaults: SceneDefaults,
+    /// Placement of the camera, in place of that of the scene.
+    pub placement: CameraPlacement,
     /// Acceleration structure for the objects.
     pub accel: AccelKind,
     /// Number of threads that build the world, or `None` for one thread per processor.
@@ -281,10 +284,13 @@ impl LoadedScene {
             cache: options.cache.as_deref(),
         };
         let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);
-        match options.threads {
+        let mut world = match options.threads {
             Some(_) => threads::install(options.threads, work),
             None => work(),
-        }
+        }?;
+        let refuse = |problem| diagnostics.push(Diagnostic::error(problem).code("bad-value"));
+        options.placement.apply(&mut world).map_err(refuse).ok()?;
+        Some(world)
     }
 }
 

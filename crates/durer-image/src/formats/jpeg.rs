@@ -1,10 +1,12 @@
-//! JPEG format, with 8 bits per channel, for photographs and textures. Writing is not supported,
-//! because the format is lossy.
+//! JPEG format, with 8 bits per channel, for photographs, textures and web pages. It is lossy.
 
-use super::{Depth, Format, ImageError, ImageHeader, codec};
-use ::image::ImageFormat;
+use super::{Depth, Format, ImageError, ImageHeader, Layer, WriteOptions, codec, eight_bit};
+use ::image::codecs::jpeg::JpegEncoder;
+use ::image::{ExtendedColorType, ImageFormat};
 
 const NAME: &str = "JPEG";
+/// Quality of written files, from 1 to 100. At this quality, the loss is hardly visible.
+const QUALITY: u8 = 95;
 
 /// Frame header of a JPEG file: the width, the height, and the horizontal and vertical sampling
 /// factors of each component.
@@ -67,9 +69,17 @@ pub const FORMAT: Format = Format {
         Ok(ImageHeader { extra_bytes: bytes.len() as u64 + beside, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported; choose PNG")),
+    encode,
     rows: None,
 };
+
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    layers.iter().try_for_each(|layer| {
+        let (size, encoder) =
+            ((layer.image.width, layer.image.height), JpegEncoder::new_with_quality(&mut *out, QUALITY));
+        codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
+    })
+}
 
 #[cfg(test)]
 mod tests {

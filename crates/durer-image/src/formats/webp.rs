@@ -1,7 +1,8 @@
-//! WebP format, lossy and lossless, which can be read but not written.
+//! WebP format. Lossy and lossless files can be read, and lossless files are written.
 
-use super::{Depth, Format, ImageError, ImageHeader, codec};
-use ::image::ImageFormat;
+use super::{Depth, Format, ImageError, ImageHeader, Layer, RowLayout, WriteOptions, codec, eight_bit};
+use ::image::codecs::webp::WebPEncoder;
+use ::image::{ExtendedColorType, ImageFormat};
 
 const NAME: &str = "WebP";
 
@@ -19,6 +20,18 @@ pub const FORMAT: Format = Format {
         Ok(ImageHeader { bytes_per_pixel: head.bytes_per_pixel + 8, extra_bytes: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::WebP, bytes)?),
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported; choose PNG")),
+    encode,
     rows: None,
 };
+
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    layers.iter().try_for_each(|layer| {
+        let (size, encoder) = ((layer.image.width, layer.image.height), WebPEncoder::new_lossless(&mut *out));
+        let Some(coverage) = &layer.coverage else {
+            return codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size);
+        };
+        let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
+        RowLayout::of(layer, options).eight_bit(&layer.image.pixels, coverage, |rgba| bytes.extend(rgba));
+        codec::encode(NAME, encoder, &bytes, ExtendedColorType::Rgba8, size)
+    })
+}

@@ -25,7 +25,7 @@ use durer_render::render::{Control, Job, Shard};
 use durer_scene::describe::{DescribedKind, Field, FieldKind};
 use memory::Memory;
 use rows::{EXECUTION, LOADING, VIEW};
-pub use rows::{compat, crop, doc, grid_cells};
+pub use rows::{compat, crop, doc, grid_cells, vector};
 use std::time::Duration;
 
 /// The options of `durer render`, parsed from text. They include options for loading, for the

@@ -10,6 +10,7 @@ use durer_render::compile::AccelKind;
 use durer_render::film::aov::AOVS;
 use durer_render::render::ShardBy;
 use durer_scene::dialect::{Dialect, Quirk};
+use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, DefaultLighting, PresetView};
 
 /// A row of a table of options. It contains the definition of the option and a function that parses
@@ -141,6 +142,25 @@ pub(super) const LOADING: &[Row] = &[
         OptionForm::Value("NAME"),
         |options, text| Ok(options.load.scene_defaults.variant = Some(text.into())),
         "Name or number of the material variant of a glTF file [default: the file's own materials]",
+    ),
+    row(
+        "eye",
+        OptionForm::Value("X,Y,Z"),
+        |options, text| Ok(options.load.placement.eye = Some(vector(text)?)),
+        "Position of the camera in world space, in place of that of the scene; the camera then looks at the center of \
+         the scene, or at --target",
+    ),
+    row(
+        "target",
+        OptionForm::Value("X,Y,Z"),
+        |options, text| Ok(options.load.placement.target = Some(vector(text)?)),
+        "Point at which the camera looks, in world space [default: that of the scene]",
+    ),
+    row(
+        "fov",
+        OptionForm::Number("DEGREES", |x| x > 0.0 && x < 180.0, "expected degrees, more than 0 and less than 180"),
+        |options, text| Ok(options.load.placement.fov = text.parse().ok()),
+        "Field of view across the larger side of the picture, in place of that of the scene",
     ),
     row(
         "fit",
@@ -292,6 +312,18 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
     numbers()
         .filter(|crop| crop.2 > 0 && crop.3 > 0)
         .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48".into())
+}
+
+/// Parses three numbers, for example `0,1.5,-4`.
+///
+/// # Errors
+///
+/// Returns a message for any other text.
+pub fn vector(text: &str) -> Result<Vec3, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let numbers: Option<[f32; 3]> = numbers.and_then(|numbers| numbers.try_into().ok());
+    let vector = numbers.map(Vec3::from).filter(|vector| vector.is_finite());
+    vector.ok_or_else(|| "expected three numbers, for example 0,1.5,-4".into())
 }
 
 /// Parses the numbers of grid cells along the axes, for example `10x10x10`.

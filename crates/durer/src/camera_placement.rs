@@ -1,0 +1,50 @@
+//! Placement of the camera by options, in place of the camera of the scene.
+
+use durer_render::world::World;
+use durer_scene::camera::{Camera, PerspectiveCamera, Projection};
+use durer_scene::math::Vec3;
+
+/// Eye, target and field of view that replace those of the scene's camera. If any is given, the
+/// scene is rendered with a perspective camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraPlacement {
+    /// Position of the eye in world space, or `None` for that of the scene's camera.
+    pub eye: Option<Vec3>,
+    /// Point at which the camera looks, in world space. `None` keeps the view direction or, if the
+    /// eye moves, looks at the center of the scene.
+    pub target: Option<Vec3>,
+    /// Field of view across the larger side of the picture, in degrees, between 0 and 180. `None`
+    /// keeps that of a perspective camera, and means 40 for others.
+    pub fov: Option<f32>,
+}
+
+impl CameraPlacement {
+    /// Places the camera of a world.
+    ///
+    /// # Errors
+    ///
+    /// Returns a message if the eye is at the target.
+    pub(crate) fn apply(&self, world: &mut World) -> Result<(), String> {
+        if *self == CameraPlacement::default() {
+            return Ok(());
+        }
+        let pose = world.camera().pose();
+        let usual = match world.camera() {
+            Camera::Perspective(camera) => camera.angle,
+            _ => 40.0,
+        };
+        let eye = self.eye.unwrap_or(pose.center);
+        let bounds = world.bounds();
+        let middle = self.eye.filter(|_| !bounds.is_empty()).map(|_| bounds.center());
+        let direction = self.target.or(middle).map_or(pose.direction, |target| target - eye);
+        if !direction.length_squared().is_normal() {
+            return Err("the camera cannot look at the point where it is: choose another `--eye` or `--target`".into());
+        }
+        // A camera that looks along its up direction needs another one.
+        let is_along = direction.normalize().cross(pose.up.normalize_or(Vec3::Y)).length() < 1e-3;
+        let up = if is_along { pose.up.any_orthogonal_vector() } else { pose.up };
+        let camera = PerspectiveCamera { center: eye, direction, up, angle: self.fov.unwrap_or(usual) };
+        world.set_camera(camera.into());
+        Ok(())
+    }
+}
