@@ -22,7 +22,7 @@ function page(): Page {
 
 /** The whole page: the viewer, the lecture and a teacher's lesson, which share one engine. */
 export function App({ engine }: { engine: Engine }) {
-  const store = useMemo(() => new Store(engine.session()), [engine]);
+  const store = useMemo(() => new Store(engine.session({ shared: true })), [engine]);
   const [at, setAt] = useState<Page>(page);
   const [lost, setLost] = useState<string | null>(null);
   const [steps, setSteps] = useState<Topic[]>([]);

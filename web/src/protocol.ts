@@ -94,6 +94,10 @@ name: string,
  */
 values: Array<number>, 
 /**
+ * The value, if it is a word.
+ */
+word: string | null, 
+/**
  * True while the motion continues.
  */
 moving: boolean, } | { "kind": "look", 
@@ -116,7 +120,11 @@ angle: number,
 /**
  * True while the motion continues.
  */
-moving: boolean, } | { "kind": "write_camera" } | { "kind": "explain", 
+moving: boolean, } | { "kind": "camera", 
+/**
+ * Keyword of the new camera, from the `cameras` of [`Event::Opened`].
+ */
+keyword: string, } | { "kind": "write_camera" } | { "kind": "explain", 
 /**
  * Column from the left.
  */
@@ -164,7 +172,15 @@ origin: [number, number, number],
 /**
  * Direction of the ray, of any length.
  */
-direction: [number, number, number], } | { "kind": "boxes" } | { "kind": "values", 
+direction: [number, number, number], 
+/**
+ * End of the ray, in lengths of `direction`; `None` for an infinite ray.
+ */
+t_max: number | null, 
+/**
+ * True for a shadow ray, which ends at any hit; false to find the closest hit.
+ */
+any: boolean, } | { "kind": "boxes" } | { "kind": "values", 
 /**
  * First column.
  */
@@ -202,9 +218,29 @@ number: number,
  */
 name: string, 
 /**
- * Values of the field.
+ * Numbers of its value.
  */
-values: Array<number>, } | { "kind": "as_text" } | { "kind": "pack" } | { "kind": "lesson" } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
+values: Array<number>, 
+/**
+ * The value, if it is a word.
+ */
+word: string | null, } | { "kind": "as_text" } | { "kind": "pack" } | { "kind": "lesson" } | { "kind": "mistakes" } | { "kind": "mistake", 
+/**
+ * Name of the mistake; `None` renders the correct picture for comparison.
+ */
+name: string | null, 
+/**
+ * Value of the mistake, such as a factor; `None` for its first value.
+ */
+value: number | null, 
+/**
+ * Width of the picture in pixels.
+ */
+width: number, 
+/**
+ * Height of the picture in pixels.
+ */
+height: number, } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
 /**
  * Name of the file; its extension selects the format.
  */
@@ -212,7 +248,15 @@ name: string, } | { "kind": "save",
 /**
  * True to overwrite changes by other programs.
  */
-force: boolean, } | { "kind": "pause", 
+force: boolean, } | { "kind": "share", 
+/**
+ * Number of this worker, from 1.
+ */
+index: number, 
+/**
+ * Number of workers, at most 64.
+ */
+count: number, } | { "kind": "pause", 
 /**
  * True to pause.
  */
@@ -246,7 +290,11 @@ tones: Array<string>,
 /**
  * Integrators.
  */
-integrators: Array<NamedChoice>, } | { "kind": "scene", 
+integrators: Array<NamedChoice>, 
+/**
+ * Kinds of cameras, by keyword.
+ */
+cameras: Array<NamedChoice>, } | { "kind": "scene", 
 /**
  * Findings of the parser and the compiler.
  */
@@ -330,7 +378,35 @@ sizes: Array<number>, } | { "kind": "lesson",
 /**
  * Lesson in Markdown; `None` if the server has none.
  */
-text: string | null, } | { "kind": "outlines", 
+text: string | null, } | { "kind": "mistakes", 
+/**
+ * The mistakes.
+ */
+mistakes: Array<MistakeChoice>, } | { "kind": "mistaken", 
+/**
+ * Width in pixels.
+ */
+width: number, 
+/**
+ * Height in pixels.
+ */
+height: number, 
+/**
+ * Fraction of the pixels whose eight-bit colour differs from the correct picture.
+ */
+changed: number, } | { "kind": "part", 
+/**
+ * Number of changes to the scene, camera and options before this picture.
+ */
+revision: number, 
+/**
+ * Number of the worker, from 1.
+ */
+index: number, 
+/**
+ * True if the worker's share is finished.
+ */
+finished: boolean, } | { "kind": "outlines", 
 /**
  * Outlines, one per object, up to a limit.
  */
@@ -436,9 +512,14 @@ column: number,
  */
 start: number, 
 /**
- * Byte offset of the end, exclusive.
+ * Byte offset of the end of the keyword, exclusive.
  */
-end: number, };
+end: number, 
+/**
+ * Byte offset of the end of the statement's block, exclusive; equal to `end` if no block
+ * follows the keyword.
+ */
+block_end: number, };
 
 export type Severity = "note" | "warning" | "error";
 
@@ -586,6 +667,12 @@ half_width: number,
  */
 distance: number, 
 /**
+ * True if straight lines in space appear as straight lines in the picture, as with a pinhole.
+ * A point at (x, y, z) in the coordinates of `right`, `up` and `forward` is then shown at
+ * (x, y) / (z `half_width`).
+ */
+projects: boolean, 
+/**
  * Fields of the camera.
  */
 fields: Array<FieldState>, 
@@ -622,7 +709,49 @@ least: number | null,
 /**
  * Maximum value, if there is one.
  */
-most: number | null, };
+most: number | null, 
+/**
+ * True if the value must be greater than `least`.
+ */
+above_least: boolean, 
+/**
+ * True if the value must be less than `most`.
+ */
+below_most: boolean, 
+/**
+ * True for a whole number.
+ */
+whole: boolean, 
+/**
+ * Possible values, if the value is a word; otherwise empty.
+ */
+choices: Array<string>, };
+
+export type MistakeChoice = { 
+/**
+ * Name of the mistake.
+ */
+name: string, 
+/**
+ * Description in words.
+ */
+description: string, 
+/**
+ * Correct code.
+ */
+right: string, 
+/**
+ * Wrong code.
+ */
+wrong: string, 
+/**
+ * Topic of the lecture that covers the mistake.
+ */
+topic: string, 
+/**
+ * Values with which the mistake is tried; a single 0 if it has none.
+ */
+values: Array<number>, };
 
 export type PictureInfo = { 
 /**
@@ -1024,6 +1153,11 @@ name: string,
  * Position in the scene's text.
  */
 place: TextPosition | null, 
+/**
+ * Number of the object in the list of [`super::SceneSummary`]; `None` for groups, transforms
+ * and objects that are rendered as several.
+ */
+object: number | null, 
 /**
  * Number of the node's material.
  */

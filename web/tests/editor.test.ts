@@ -54,7 +54,7 @@ describe("findings", () => {
     help: "did you mean `Sphere`?",
     effect: null,
     file: null,
-    place: { line: 1, column: 9, start: 8, end: 13 },
+    place: { line: 1, column: 9, start: 8, end: 13, block_end: 13 },
     fix: [],
   };
 

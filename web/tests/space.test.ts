@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { frame, frameEye, length, orbit, projector, sub, type Vec } from "../src/explain/space";
-import { mergeMotions } from "../src/viewer/store";
+import { mergeMotions } from "../src/viewer/motion";
 
 describe("an eye", () => {
   const eye = { target: [0.3, -0.2, 1] as Vec, distance: 6, yaw: 0.7, pitch: 0.4, angle: 40 };

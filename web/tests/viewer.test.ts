@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { edges, lines } from "../src/explain/edges";
 import { describeRow } from "../src/explain/scan";
-import { hex, linear } from "../src/viewer/model";
+import { hex, linear } from "../src/viewer/color";
 import { formatValues } from "../src/viewer/pixel-numbers";
 import { crc, zip } from "../src/viewer/zip";
 import { clampZoom, cropForZoom, partOf, whole, zoomBy } from "../src/viewer/zoom";

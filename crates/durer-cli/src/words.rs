@@ -9,7 +9,8 @@ use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, di
 /// Arguments of `durer words`.
 #[derive(clap::Args)]
 pub struct WordsArgs {
-    /// Word of the language, or a term such as `glass` or `area light`, to look up [default: list every word that begins a block]
+    /// Word of the language, or a term such as `glass` or `area light` [default: list every word
+    /// that begins a block]
     pub word: Option<String>,
     /// Show only words of this dialect
     #[arg(long)]

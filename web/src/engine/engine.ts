@@ -4,6 +4,8 @@ import { decode } from "./wire";
 /** Transport of messages to an engine, which is a server or a worker. */
 export interface Transport {
   send(ask: RequestMessage): void;
+  /** Divides the pictures of a session among several workers, if the engine has any. */
+  share?(session: number): void;
   close(): void;
 }
 
@@ -44,9 +46,12 @@ export class Engine {
     });
   }
 
-  /** Opens a session with its own scene, camera and image. */
-  session(): Session {
+  /** Opens a session with its own scene, camera and image. The image of a shared session is rendered
+   * by several workers.
+   */
+  session({ shared = false } = {}): Session {
     const id = this.#next++;
+    if (shared) this.#transport.share?.(id);
     const session = new Session(id, this.#transport, () => this.#sessions.delete(id));
     this.#sessions.set(id, session);
     return session;

@@ -1,4 +1,5 @@
 import { libraryBuild } from "./level";
+import type { PartsPort } from "./worker";
 
 /** Code of the worker: runs the library as WebAssembly in small steps, and handles messages in between.
  */
@@ -8,19 +9,23 @@ interface Wasm {
   default(source: { module_or_path: URL }): Promise<unknown>;
   Engine: new () => {
     receive(text: string, send: (bytes: Uint8Array<ArrayBuffer>) => void): void;
+    receive_part(bytes: Uint8Array<ArrayBuffer>): void;
     step(send: (bytes: Uint8Array<ArrayBuffer>) => void): boolean;
   };
 }
 
-const early: string[] = [];
-let receive = (text: string) => {
-  early.push(text);
-};
-self.onmessage = (message: MessageEvent<string>) => receive(message.data);
+type Received = string | PartsPort;
 
-function send(bytes: Uint8Array<ArrayBuffer>) {
+const early: Received[] = [];
+let receive = (message: Received) => {
+  early.push(message);
+};
+self.onmessage = (message: MessageEvent<Received>) => receive(message.data);
+
+/** Sends bytes to the page, or from a helper to the first worker. */
+let send = (bytes: Uint8Array<ArrayBuffer>) => {
   self.postMessage(bytes.buffer, { transfer: [bytes.buffer] });
-}
+};
 
 async function start() {
   const script = new URL(`./wasm/${libraryBuild()}/durer_wasm.js`, self.location.href);
@@ -34,14 +39,25 @@ async function start() {
     if (busy) turns.port2.postMessage(null);
   };
   turns.port1.onmessage = turn;
-  receive = (text) => {
-    engine.receive(text, send);
-    if (!busy) {
-      busy = true;
-      turns.port2.postMessage(null);
+  const wake = () => {
+    if (busy) return;
+    busy = true;
+    turns.port2.postMessage(null);
+  };
+  receive = (message) => {
+    if (typeof message === "string") {
+      engine.receive(message, send);
+      wake();
+    } else if (message.role === "helper") {
+      send = (bytes) => message.port.postMessage(bytes.buffer, [bytes.buffer]);
+    } else {
+      message.port.onmessage = ({ data }: MessageEvent<ArrayBuffer>) => {
+        engine.receive_part(new Uint8Array(data));
+        wake();
+      };
     }
   };
-  for (const text of early) receive(text);
+  for (const message of early) receive(message);
 }
 
 start().catch((error: unknown) => self.postMessage(`cannot load the library: ${error}`));

@@ -161,7 +161,12 @@ function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: St
   const { camera, head } = store;
   if (camera) {
     const aspect = head ? head.full_width / head.full_height : 1;
-    stroke(context, view, frustum(camera, aspect, camera.distance * 0.35), color("--soft"), 1, 0.8);
+    const reach = camera.distance * 0.35;
+    // The rays of other cameras do not fill a pyramid, so only their direction is drawn.
+    const outline: [Vec, Vec][] = camera.projects
+      ? frustum(camera, aspect, reach)
+      : [[camera.eye, add(camera.eye, mul(reach, camera.forward))]];
+    stroke(context, view, outline, color("--soft"), 1, 0.8);
   }
   const { boxLevel, scan } = store;
   if (boxLevel !== null) {

@@ -36,6 +36,7 @@ export function Tests({ store }: { store: Store }) {
               onClick={() => {
                 setOpen(open === test.object ? null : test.object);
                 store.goTo(test.place);
+                store.reveal(test.object);
               }}
             >
               <span class="verdict">{words[test.verdict]}</span>

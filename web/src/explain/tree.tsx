@@ -31,7 +31,8 @@ function Branch({ store, term, path, level }: { store: Store; term: Term; path: 
   const choose = () => {
     store.unfolded = !(chosen && store.unfolded);
     store.choose(path);
-    if (term.place) store.goTo(term.place);
+    store.goTo(term.place);
+    store.reveal(term.object);
   };
   return (
     <li

@@ -2,7 +2,7 @@ import { createContext } from "preact";
 import { useContext, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Engine, EventOf, Session } from "../engine/engine";
 import type { Vec } from "../explain/space";
-import type { CastResult, Event, PixelExplanation, Request, Setting } from "../protocol";
+import type { CastResult, Event, PixelExplanation, Request, Setting, Traversal } from "../protocol";
 
 /** The engine that all figures share. */
 export const EngineContext = createContext<Engine | null>(null);
@@ -112,6 +112,15 @@ export function useAnswer<K extends Event["kind"]>(
 /** Returns the results of intersecting a ray with all objects of a scene. */
 export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastResult | null {
   return useAnswer(session, { kind: "cast", origin, direction, t_max: null }, "cast", scene)?.cast ?? null;
+}
+
+/** Returns the traversal of a structure by a ray. */
+export function useWalk(
+  session: Session,
+  ray: Omit<Extract<Request, { kind: "walk" }>, "kind">,
+  scene: string,
+): Traversal | null {
+  return useAnswer(session, { kind: "walk", ...ray }, "walk", scene)?.walk ?? null;
 }
 
 /** Returns the explanation of a pixel of a session's image. */

@@ -2,6 +2,7 @@ import { useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { Rows } from "../explain/rows";
 import { flatten } from "../explain/segments";
+import type { MistakenPicture } from "../mistakes/mistaken";
 import type { PictureInfo } from "../protocol";
 import { short } from "../ui/slider";
 import { usePixel } from "./context";
@@ -15,11 +16,13 @@ interface Props {
   label: string;
   /** Key of the image; a change asks for a new explanation. */
   scene: string;
+  /** Picture with a mistake, which is shown instead. */
+  mistaken?: MistakenPicture | null;
   onResult?(head: PictureInfo): void;
 }
 
 /** Rendered image, with the terms of the last clicked pixel beside it. */
-export function ExplainedImage({ session, width, height, label, scene, onResult }: Props) {
+export function ExplainedImage({ session, width, height, label, scene, mistaken = null, onResult }: Props) {
   const [place, setPlace] = useState({ x: 0.5, y: 0.5 });
   const [hash, setHash] = useState("");
   const at = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
@@ -33,6 +36,7 @@ export function ExplainedImage({ session, width, height, label, scene, onResult 
           width={width}
           height={height}
           label={label}
+          mistaken={mistaken}
           onResult={(head) => {
             setHash(head.hash ?? "");
             onResult?.(head);

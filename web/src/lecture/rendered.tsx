@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Session } from "../engine/engine";
+import { MistakenCanvas, type MistakenPicture } from "../mistakes/mistaken";
 import type { PictureInfo } from "../protocol";
 import { draw } from "../viewer/picture";
 
@@ -10,11 +11,21 @@ interface Props {
   label: string;
   /** True to show pixels as squares. */
   squares?: boolean;
+  /** Picture with a mistake, which is shown instead. */
+  mistaken?: MistakenPicture | null;
   onResult?(head: PictureInfo): void;
 }
 
 /** Shows the image that a session renders. */
-export function RenderedImage({ session, width, height, label, squares = false, onResult }: Props) {
+export function RenderedImage({
+  session,
+  width,
+  height,
+  label,
+  squares = false,
+  mistaken = null,
+  onResult,
+}: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const callback = useRef(onResult);
   callback.current = onResult;
@@ -31,6 +42,13 @@ export function RenderedImage({ session, width, height, label, squares = false, 
   return (
     <div class="stage render" style={{ aspectRatio: `${width} / ${height}` }}>
       <canvas ref={canvas} class={squares ? "squares" : ""} role="img" aria-label={label} />
+      {mistaken && (
+        <MistakenCanvas
+          picture={mistaken}
+          label={`${label}, with the mistake`}
+          look={squares ? "instead squares" : "instead"}
+        />
+      )}
     </div>
   );
 }

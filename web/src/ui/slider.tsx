@@ -9,10 +9,12 @@ interface Props {
   /** Value as displayed. */
   text?: string;
   change(value: number): void;
+  /** Called when the user has finished a change. */
+  settle?(value: number): void;
 }
 
 /** Slider with its label and value. */
-export function Slider({ label, value, min, max, step, text, change }: Props) {
+export function Slider({ label, value, min, max, step, text, change, settle }: Props) {
   const id = useId();
   return (
     <div class="slider">
@@ -25,6 +27,7 @@ export function Slider({ label, value, min, max, step, text, change }: Props) {
         step={step ?? (max - min) / 400}
         value={value}
         onInput={(event) => change(event.currentTarget.valueAsNumber)}
+        onChange={(event) => settle?.(event.currentTarget.valueAsNumber)}
       />
       <output for={id}>{text ?? short(value)}</output>
     </div>

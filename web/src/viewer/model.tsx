@@ -1,7 +1,8 @@
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { FieldState, MaterialState, SceneNode } from "../protocol";
-import { DragNumber } from "../ui/dragged";
-import { Slider } from "../ui/slider";
+import { hex } from "./color";
+import { Fields, type FieldValue } from "./field";
+import { pathsTo } from "./nodes";
 import { download } from "./settings";
 import { type Store, useStore } from "./store";
 import { zip } from "./zip";
@@ -25,11 +26,7 @@ export function Model({ store }: { store: Store }) {
           Save as scene
         </button>
       </div>
-      <ul class="things" aria-label="Objects">
-        {tree?.nodes.map((node, i) => (
-          <Node key={i} node={node} choose={setOpen} />
-        ))}
-      </ul>
+      <Tree store={store} choose={setOpen} />
       <h3>{tree?.materials.length ?? 0} materials</h3>
       <ul class="materials" aria-label="Materials">
         {tree?.materials.map((material, number) => (
@@ -43,7 +40,7 @@ export function Model({ store }: { store: Store }) {
               <span class="chip" style={{ background: swatch(material) }} />
               {number}: {material.name}
             </button>
-            {open === number && <Fields store={store} number={number} material={material} />}
+            {open === number && <MaterialFields store={store} number={number} fields={material.fields} />}
           </li>
         ))}
       </ul>
@@ -51,27 +48,82 @@ export function Model({ store }: { store: Store }) {
   );
 }
 
-function Node({ node, choose }: { node: SceneNode; choose(material: number): void }) {
-  const [open, setOpen] = useState(false);
-  const inner = node.nodes.length > 0;
+/**
+ * Tree of the objects. A click on an object outlines it in the picture, and a click on a pixel shows
+ * its object in the tree.
+ */
+function Tree({ store, choose }: { store: Store; choose(material: number): void }) {
+  const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
+  const list = useRef<HTMLUListElement>(null);
+  /** True until the revealed object is visible. */
+  const hidden = useRef(false);
+  const { tree, revealed } = store;
+  const nodes = tree?.nodes ?? [];
+
+  useEffect(() => {
+    if (!revealed) return;
+    hidden.current = true;
+    setOpen((old) => new Set([...old, ...pathsTo(nodes, revealed.object).slice(0, -1)]));
+  }, [revealed]);
+  // The object is in the list only after its parents have been opened.
+  useEffect(() => {
+    const found = hidden.current && list.current?.querySelector("[aria-current]");
+    if (!found) return;
+    found.scrollIntoView({ block: "nearest" });
+    hidden.current = false;
+  }, [revealed, open]);
+
+  const toggle = (path: string) => {
+    const next = new Set(open);
+    if (!next.delete(path)) next.add(path);
+    setOpen(next);
+  };
+  return (
+    <ul class="things" aria-label="Objects" ref={list}>
+      {nodes.map((node, i) => (
+        <Node key={i} node={node} path={String(i)} {...{ store, open, toggle, choose }} />
+      ))}
+    </ul>
+  );
+}
+
+interface NodeProps {
+  store: Store;
+  node: SceneNode;
+  path: string;
+  /** Paths of the nodes whose children are visible. */
+  open: ReadonlySet<string>;
+  toggle(path: string): void;
+  choose(material: number): void;
+}
+
+function Node({ node, path, ...rest }: NodeProps) {
+  const { store, open, toggle, choose } = rest;
+  const { name, object, material, nodes } = node;
+  const inner = nodes.length > 0;
+  const isOpen = inner && open.has(path);
   return (
     <li>
       <button
         type="button"
         class="button plain"
-        aria-expanded={inner ? open : undefined}
+        aria-expanded={inner ? isOpen : undefined}
+        aria-current={object !== null && object === store.revealed?.object ? true : undefined}
         onClick={() => {
-          if (inner) setOpen(!open);
-          else if (node.material !== null) choose(node.material);
+          if (inner) return toggle(path);
+          if (material !== null) choose(material);
+          const isMarked = object === store.marked;
+          store.reveal(object);
+          store.mark(isMarked ? null : object);
         }}
       >
-        {inner ? (open ? "▾" : "▸") : "·"} {node.name}
-        {node.material !== null && !inner && <span class="soft"> material {node.material}</span>}
+        {inner ? (isOpen ? "▾" : "▸") : "·"} {name}
+        {material !== null && !inner && <span class="soft"> material {material}</span>}
       </button>
-      {open && (
+      {isOpen && (
         <ul class="things">
-          {node.nodes.map((below, i) => (
-            <Node key={i} node={below} choose={choose} />
+          {nodes.map((below, i) => (
+            <Node key={i} node={below} path={`${path}.${i}`} {...rest} />
           ))}
         </ul>
       )}
@@ -79,82 +131,17 @@ function Node({ node, choose }: { node: SceneNode; choose(material: number): voi
   );
 }
 
-function Fields({ store, number, material }: { store: Store; number: number; material: MaterialState }) {
-  const set = (field: FieldState, values: number[]) =>
-    store.session.send({ kind: "material", number, name: field.name, values });
+function MaterialFields({ store, number, fields }: { store: Store; number: number; fields: FieldState[] }) {
+  const set = (field: FieldState, value: FieldValue) => {
+    // At the end of a motion, the same value comes again.
+    if (value.values.join() === field.values.join() && (value.word ?? field.text) === field.text) return;
+    store.session.send({ kind: "material", number, name: field.name, ...value });
+  };
   return (
     <div class="fields">
-      {material.fields
-        .filter((field) => field.values.length > 0)
-        .map((field) => (
-          <MaterialField key={field.name} field={field} set={(values) => set(field, values)} />
-        ))}
+      <Fields fields={fields} set={set} />
     </div>
   );
-}
-
-function MaterialField({ field, set }: { field: FieldState; set(values: number[]): void }) {
-  const { name, values, doc, least, most } = field;
-  const [only] = values;
-  if (values.length === 3 && name.toLowerCase().includes("color")) {
-    return (
-      <div class="field" title={doc}>
-        <span class="label">{name}</span>
-        <input
-          type="color"
-          aria-label={name}
-          value={hex(values)}
-          onInput={(event) => set(linear(event.currentTarget.value))}
-        />
-      </div>
-    );
-  }
-  if (values.length === 1 && only !== undefined && least !== null && most !== null) {
-    return (
-      <div title={doc}>
-        <Slider label={name} value={only} min={least} max={most} change={(x) => set([x])} />
-      </div>
-    );
-  }
-  return (
-    <div class="field" title={doc}>
-      <span class="label">{name}</span>
-      <span class="vector">
-        {values.map((value, i) => (
-          <DragNumber
-            key={i}
-            label={`${name} ${"xyz"[i] ?? ""}`}
-            value={value}
-            decimals={3}
-            step={Math.max(0.01, Math.abs(value) / 200)}
-            {...(least === null ? {} : { min: least })}
-            change={(x) => set(values.with(i, x))}
-          />
-        ))}
-      </span>
-    </div>
-  );
-}
-
-/** Converts linear RGB to a CSS colour. */
-export function hex(values: number[]): string {
-  const eight = (x: number) => {
-    const clear = Math.min(1, Math.max(0, x));
-    const curve = clear <= 0.0031308 ? 12.92 * clear : 1.055 * clear ** (1 / 2.4) - 0.055;
-    return Math.round(255 * curve)
-      .toString(16)
-      .padStart(2, "0");
-  };
-  return `#${values.map(eight).join("")}`;
-}
-
-/** Converts a CSS colour to linear RGB. */
-export function linear(color: string): number[] {
-  return [1, 3, 5].map((at) => {
-    const curve = Number.parseInt(color.slice(at, at + 2), 16) / 255;
-    const light = curve <= 0.04045 ? curve / 12.92 : ((curve + 0.055) / 1.055) ** 2.4;
-    return Number(light.toFixed(5));
-  });
 }
 
 function swatch({ fields }: MaterialState): string {

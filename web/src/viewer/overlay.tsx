@@ -31,11 +31,9 @@ function End({ view, at }: { view: Projector; at: Vec }) {
   return end && <circle cx={end.x} cy={end.y} r={5} />;
 }
 
-/** Returns the projection of a camera whose rays diverge from one point; `null` for all other cameras. */
+/** Returns the projection of a camera that shows straight lines as straight lines; `null` for other cameras. */
 export function cameraView(camera: CameraState, width: number, height: number): Projector | null {
-  if (!/^(Perspective|Pinhole|ThinLens)?Camera$/.test(camera.keyword)) return null;
-  if (camera.fields.some(({ name, values }) => name.startsWith("shift") && values[0] !== 0)) return null;
-  return projector({ ...camera, half: camera.half_width }, width, height);
+  return camera.projects ? projector({ ...camera, half: camera.half_width }, width, height) : null;
 }
 
 /** Returns the polylines of an outline as the data of a path. */

@@ -1,7 +1,6 @@
-import type { FieldState } from "../protocol";
-import { DragNumber } from "../ui/dragged";
 import { Slider } from "../ui/slider";
 import { Switch } from "../ui/switch";
+import { Fields } from "./field";
 import { type Store, useStore } from "./store";
 import { whole } from "./zoom";
 
@@ -22,12 +21,12 @@ function CameraFields({ store }: { store: Store }) {
   if (!camera) return null;
   return (
     <section class="settings" aria-label="Camera">
-      <h3>{camera.keyword}</h3>
-      {camera.fields
-        .filter((field) => field.values.length > 0)
-        .map((field) => (
-          <Field key={field.name} store={store} field={field} />
-        ))}
+      <h3>Camera</h3>
+      <CameraKind store={store} keyword={camera.keyword} />
+      <Fields
+        fields={camera.fields}
+        set={({ name }, value, moving) => store.session.send({ kind: "field", name, ...value, moving })}
+      />
       <div class="row">
         <button
           type="button"
@@ -48,44 +47,23 @@ function CameraFields({ store }: { store: Store }) {
   );
 }
 
-function Field({ store, field }: { store: Store; field: FieldState }) {
-  const set = (values: number[], moving: boolean) =>
-    store.session.send({ kind: "field", name: field.name, values, moving });
-  const [only] = field.values;
-  const bounded = field.least !== null && field.most !== null;
-  if (field.values.length === 1 && only !== undefined && bounded) {
-    // Angles of 0 and 180 degrees have no image.
-    const inset = /angle|fov/i.test(field.name) ? 0.5 : 0;
-    const [min, max] = [(field.least ?? 0) + inset, (field.most ?? 180) - inset];
-    return (
-      <div title={field.doc} onPointerUp={() => set(field.values, false)}>
-        <Slider
-          label={field.name}
-          value={only}
-          min={min}
-          max={max}
-          step={(max - min) / 1000}
-          change={(x) => set([x], true)}
-        />
-      </div>
-    );
-  }
-  const size = Math.max(0.5, Math.hypot(...field.values));
+/** Selects the kind of the camera. Position and direction stay, as far as the new kind has them. */
+function CameraKind({ store, keyword }: { store: Store; keyword: string }) {
+  const kinds = store.opened?.cameras ?? [];
   return (
-    <div class="field" title={field.doc}>
-      <span class="label">{field.name}</span>
-      <span class="vector">
-        {field.values.map((value, i) => (
-          <DragNumber
-            key={i}
-            label={`${field.name} ${"xyz"[i] ?? ""}`}
-            value={value}
-            decimals={3}
-            step={size / 400}
-            change={(x, moving) => set(field.values.with(i, x), moving)}
-          />
+    <div class="field" title={kinds.find(({ name }) => name === keyword)?.doc}>
+      <label for="camera">Kind</label>
+      <select
+        id="camera"
+        value={keyword}
+        onChange={(event) => store.session.send({ kind: "camera", keyword: event.currentTarget.value })}
+      >
+        {kinds.map(({ name, doc }) => (
+          <option key={name} value={name} title={doc}>
+            {name.replace(/Camera$/, "").replace(/(?<=[a-z])(?=[A-Z])/g, " ")}
+          </option>
         ))}
-      </span>
+      </select>
     </div>
   );
 }

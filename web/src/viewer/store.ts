@@ -16,6 +16,7 @@ import type {
   Setting,
   TreeBox,
 } from "../protocol";
+import { mergeMotions } from "./motion";
 import { cropForZoom, whole, type Zoom } from "./zoom";
 
 /** Event that states which file was opened. */
@@ -44,8 +45,12 @@ export class Store {
   /** True if the formulas of the selected term are visible. */
   unfolded = false;
   hovered: string | null = null;
-  /** Index of the object at the cursor in the text. */
+  /** Number of the object at the cursor in the text, or of the one selected in a model's tree. */
   marked: number | null = null;
+  /** Object that is selected in a model's tree. */
+  revealed: { object: number; count: number } | null = null;
+  /** Number of pixels that the user has asked to explain. */
+  explanations = 0;
   outlines: Outline[] = [];
   lights: LightMarker[] = [];
   words: Keyword[] = [];
@@ -199,8 +204,10 @@ export class Store {
       this.hovered = null;
       this.cast = null;
       this.unfolded = false;
+      this.explanations++;
       this.choose("0");
       this.goTo(pixel.tree?.place ?? null);
+      this.reveal(pixel.tree?.object ?? null);
     } catch (error) {
       this.error = String(error);
     }
@@ -271,6 +278,14 @@ export class Store {
     this.changed();
   }
 
+  /** Shows an object of a model, which has no text, in the tree. */
+  reveal(object: number | null) {
+    if (object === null || this.opened?.text !== null) return;
+    this.revealed = { object, count: (this.revealed?.count ?? 0) + 1 };
+    this.marked = null;
+    this.changed();
+  }
+
   async save(force: boolean) {
     try {
       this.session.send({ kind: "save", force });
@@ -290,6 +305,8 @@ export class Store {
         this.conflict = false;
         this.contents = null;
         this.tree = null;
+        this.marked = null;
+        this.revealed = null;
         this.zoom = whole;
         this.#crop = null;
         break;
@@ -360,23 +377,6 @@ export class Store {
     this.lights = lamps;
     this.changed();
   }
-}
-
-/** Merges consecutive motions of the same kind. */
-export function mergeMotions(motions: Motion[]): Motion[] {
-  const all: Motion[] = [];
-  for (const motion of motions) {
-    const last = all.at(-1);
-    if (last?.kind === "dolly" && motion.kind === "dolly") last.factor *= motion.factor;
-    else if (
-      (last?.kind === "orbit" || last?.kind === "pan" || last?.kind === "turn") &&
-      motion.kind === last.kind
-    ) {
-      last.right += motion.right;
-      last.up += motion.up;
-    } else all.push({ ...motion });
-  }
-  return all;
 }
 
 /** Returns the term at a path such as `0.2.1` in the tree of a pixel. */

@@ -2,6 +2,7 @@ import { useEffect, useState } from "preact/hooks";
 import { Editor } from "../editor/editor";
 import { Findings } from "../editor/findings";
 import { Explain } from "../explain/panel";
+import { Mistakes } from "./mistakes";
 import { Model } from "./model";
 import { Picture } from "./picture";
 import { Settings } from "./settings";
@@ -10,7 +11,7 @@ import { type Store, useStore } from "./store";
 import { droppedFiles, uploadFiles } from "./upload";
 
 /** Panel beside the image, or below it in narrow windows, where the text is one of the panels. */
-type Side = "explain" | "settings" | "text";
+type Side = "explain" | "settings" | "mistakes" | "text";
 
 /** The viewer: panes with the scene's text, its image, and the explanation of a pixel. */
 export function Viewer({ store }: { store: Store }) {
@@ -37,8 +38,8 @@ export function Viewer({ store }: { store: Store }) {
   }, [store]);
 
   useEffect(() => {
-    if (store.pixel) setSide("explain");
-  }, [store.pixel]);
+    if (store.explanations > 0) setSide("explain");
+  }, [store, store.explanations]);
 
   return (
     <main class="viewer" data-side={side}>
@@ -63,11 +64,19 @@ export function Viewer({ store }: { store: Store }) {
       <div class="pane-head switcher tabs" role="tablist" aria-label="Panel">
         <PaneTab name="Explain" on={side === "explain"} choose={() => setSide("explain")} />
         <PaneTab name="Camera and render" on={side === "settings"} choose={() => setSide("settings")} />
+        <PaneTab
+          name="Mistakes"
+          label="Common mistakes"
+          on={side === "mistakes"}
+          choose={() => setSide("mistakes")}
+        />
         <PaneTab name="Scene" on={side === "text"} choose={() => setSide("text")} />
       </div>
       <section class="pane why" aria-label="Explanation and settings">
         {side === "settings" ? (
           <Settings store={store} />
+        ) : side === "mistakes" ? (
+          <Mistakes store={store} />
         ) : (
           <div class="scrolls">
             <Explain store={store} />
@@ -78,9 +87,20 @@ export function Viewer({ store }: { store: Store }) {
   );
 }
 
-function PaneTab({ name, on, choose }: { name: string; on: boolean; choose(): void }) {
+function PaneTab({
+  name,
+  label = name,
+  on,
+  choose,
+}: {
+  name: string;
+  /** Name for screen readers, if there is no room for it. */
+  label?: string;
+  on: boolean;
+  choose(): void;
+}) {
   return (
-    <button type="button" role="tab" class="tab" aria-selected={on} onClick={choose}>
+    <button type="button" role="tab" class="tab" aria-label={label} aria-selected={on} onClick={choose}>
       {name}
     </button>
   );

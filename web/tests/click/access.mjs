@@ -35,6 +35,12 @@ const screens = {
   async settings(page) {
     await page.getByRole("tab", { name: "Camera and render" }).click();
   },
+  async mistakes(page) {
+    await page.getByRole("tab", { name: "Common mistakes" }).click();
+    await page.getByLabel("Search mistakes").fill("no shadows");
+    await page.getByRole("button", { name: "there are no shadows" }).click();
+    await page.waitForSelector(".comparison strong");
+  },
   async model(page) {
     await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
     await page.waitForSelector(".materials li", { state: "attached" });

@@ -127,8 +127,17 @@ await test("numbers: mistakes", wide, async (page) => {
   await page.getByRole("switch", { name: /^Common mistake/ }).click();
   near((await told(page, /1 \/ tan 46° = (0\.\d+)/))[0], 1 / Math.tan((46 * Math.PI) / 180), 1e-4, "D");
   await open(page, "#/lecture/shadow");
-  const [any, all] = await told(page, /any hit: (\d+) tests?, closest hit: ([1-9]\d*)/);
-  if (!(any < all)) throw new Error(`${any} of ${all} tests`);
+  // The ball occludes the light, and is tested before the last of three objects.
+  const counts = /any hit: (\d+) tests?, closest hit: ([1-9]\d*) tests?/;
+  const [any, all] = await told(page, counts);
+  if (any !== 2 || all !== 3) throw new Error(`${any} and ${all} tests`);
+  // A ray that nothing occludes is tested against all objects in both cases.
+  const point = page.getByRole("button", { name: /^The point on the floor/ });
+  await point.focus();
+  for (let i = 0; i < 8; i++) await page.keyboard.press("Shift+ArrowRight");
+  await told(page, /the light is (visible)/);
+  const [free] = await told(page, /any hit: (\d+) tests, closest hit: 3 tests/);
+  near(free, 3, 0, "tests of a ray that reaches the light");
 });
 
 await test("numbers: interpolation", wide, async (page) => {

@@ -88,8 +88,8 @@ pub(crate) trait Lanes: FloatLanes {
     /// Returns a mask of the lanes whose sign bit is set.
     fn signs(self, a: Self::Floats) -> u32;
     /// Intersects three slab intervals with the interval `within` of the ray. Returns the last
-    /// start, computed with [`Lanes::max_as_int`], and the first end, computed with [`Lanes::min_as_int`].
-    /// The slab that is loaded last should be passed as the last argument.
+    /// start, computed with [`Lanes::max_as_int`], and the first end, computed with
+    /// [`Lanes::min_as_int`]. The slab that is loaded last should be passed as the last argument.
     #[inline(always)]
     fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
         let enter = self.max_as_int(z[0], self.max_as_int(y[0], self.max_as_int(x[0], within[0])));

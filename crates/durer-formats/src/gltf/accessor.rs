@@ -234,8 +234,8 @@ impl Accessor {
         self.view.as_ref().and_then(|view| view.stride).unwrap_or(dense)
     }
 
-    /// Returns true if bytes are probably 16-bit numbers: the accessor is the first half of its view,
-    /// and every second byte is 0.
+    /// Returns true if bytes are probably 16-bit numbers: the accessor is the first half of its
+    /// view, and every second byte is 0.
     pub fn holds_shorts(&self) -> bool {
         let Some(view) = self.view.as_ref().filter(|_| self.sparse.is_none() && self.offset == 0) else { return false };
         let bytes = view.bytes();

@@ -4,6 +4,7 @@ import type { CameraRay } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
 import { useAnswer, usePageBackground, useScene } from "../context";
 import { Dot, Line } from "../draw";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { RenderedImage } from "../rendered";
 import { materialPresets, sceneText } from "../scenes";
@@ -147,6 +148,7 @@ function CamerasFigure() {
     angle: 38,
   });
   const [width, height] = kind.size;
+  const mistake = useFigureMistake(image, "transposed", [width / 2, Math.ceil(height / 2)], [text]);
   const columns = 15;
   const rows = Math.max(5, Math.round((columns * height) / width) | 1);
   const rays = useAnswer(image, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
@@ -189,6 +191,7 @@ function CamerasFigure() {
               width={width}
               height={height}
               label={`What it sees: ${kind.name}`}
+              mistaken={mistake.picture}
             />
           </div>
         </div>
@@ -212,6 +215,7 @@ function CamerasFigure() {
               change={(next) => setValues({ ...values, [id]: next })}
             />
           )}
+          <MistakeSwitch name="swap x and y" mistake={mistake} />
         </>
       }
     >
@@ -236,6 +240,7 @@ function CamerasFigure() {
       >
         where its rays start
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -2,6 +2,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Session } from "../../engine/engine";
 import { fixed, Slider } from "../../ui/slider";
 import { usePixel, useScene } from "../context";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Switch, Sym } from "../parts";
 import { PixelPicker } from "../picked";
 import { RenderedImage } from "../rendered";
@@ -50,6 +51,7 @@ function EpsilonFigure() {
       for (const end of ends) end();
     };
   }, [withEpsilon, exactSession]);
+  const mistake = useFigureMistake(withEpsilon, "epsilon-negative", [width, height], [epsilon, exact]);
   const [place, setPlace] = useState({ x: 0.36, y: 0.5 });
   const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
   const account = usePixel(withEpsilon, pixel.x, pixel.y, `${epsilon} ${exact}`);
@@ -66,6 +68,7 @@ function EpsilonFigure() {
             <RenderedImage
               {...sizes}
               label="The scene with this epsilon; click for the shadow ray of a pixel"
+              mistaken={mistake.picture}
             />
           </PixelPicker>
           <RenderedImage {...sizes} session={exactSession} label="The scene with exact ray origins" />
@@ -86,6 +89,7 @@ function EpsilonFigure() {
             }}
           />
           <Switch label="Exact origins, no epsilon" on={exact} change={setExact} />
+          <MistakeSwitch name="an epsilon with the wrong sign" mistake={mistake} />
         </>
       }
     >
@@ -106,6 +110,7 @@ function EpsilonFigure() {
       <Equation numbers={<b>{shadow}</b>}>
         the shadow ray of pixel {pixel.x}, {pixel.y}
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -3,6 +3,7 @@ import { add, cross, dot, type Eye, mul, type Projector, sub, unit, type Vec } f
 import { fixed, Slider, short } from "../../ui/slider";
 import { useCast, usePageBackground, useScene } from "../context";
 import { Dot, Handle, Line, Name, Path } from "../draw";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Sym } from "../parts";
 import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
@@ -68,6 +69,8 @@ function MachineFigure() {
     return () => clearInterval(timer);
   }, [plays]);
 
+  const mistake = useFigureMistake(drawn, "farthest-object", [columns, rows], [colors]);
+
   const [column, row] = [at % columns, Math.floor(at / columns)];
   const pixel = onPicture((2 * (column + 0.5)) / columns - 1, (rows - 2 * (row + 0.5)) / columns);
   const direction = useMemo(() => unit(sub(pixel, nail)), [at]);
@@ -96,7 +99,7 @@ function MachineFigure() {
         >
           {(view) => (
             <>
-              <Canvas view={view} colors={colors} upTo={at} />
+              <Canvas view={view} colors={mistake.picture?.pixels ?? colors} upTo={at} />
               <Line view={view} from={nail} to={end} color="var(--ray-camera)" width={2.5} />
               {hit && <Dot view={view} at={end} color="var(--ray-camera)" radius={6} />}
               <Dot view={view} at={nail} color="var(--ink)" radius={6} />
@@ -130,6 +133,7 @@ function MachineFigure() {
               setAt(value);
             }}
           />
+          <MistakeSwitch name="keep the farthest hit" mistake={mistake} />
         </>
       }
     >
@@ -150,6 +154,7 @@ function MachineFigure() {
       <Equation numbers={`pixel ${at + 1} of ${columns * rows}: one ray each`}>
         for each pixel a ray, for each ray the closest object
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -2,12 +2,17 @@ import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
 import { useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot } from "../plot";
+import { RenderedImage } from "../rendered";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
+
+/** Size of the rendered picture. */
+const [width, height] = [240, 180];
 
 function NormalsFigure() {
   const [shear, setShear] = useState(0.8);
@@ -20,6 +25,7 @@ function NormalsFigure() {
     group: `MaterialIndex 0 Transform { Matrix { 1 ${shear} 0 0  0 ${squash} 0 0  0 0 1 0  0 0 0 1 } Sphere { center 0 0 0 radius 1.4 } }`,
   });
   const session = useScene(text);
+  const mistake = useFigureMistake(session, "normals-moved", [width, height], [text]);
   const angle = (turn * Math.PI) / 180;
   const own: Point = [Math.cos(angle), Math.sin(angle)];
   const map = ([x, y]: Point): Point => [x + shear * y, squash * y];
@@ -37,48 +43,59 @@ function NormalsFigure() {
   return (
     <Figure
       stage={
-        <Plot reach={[4.4, 2.45]} label="A sheared circle with a tangent and two normals">
-          {(scale) => (
-            <>
-              <polygon
-                points={outline.map(([x, y]) => `${scale.x(x)},${scale.y(y)}`).join(" ")}
-                fill="var(--solid)"
-                fill-opacity={0.14}
-                stroke="var(--ink)"
-                stroke-width={3}
-              />
-              <PlaneArrow
-                scale={scale}
-                from={end(tangent, -1.6)}
-                to={end(tangent, 1.6)}
-                color="var(--ray-camera)"
-                width={2.5}
-              />
-              <PlaneName scale={scale} at={end(tangent, 1.6)} color="var(--ray-camera)">
-                M t
-              </PlaneName>
-              <PlaneArrow scale={scale} from={point} to={end(wrong)} color="var(--ray-shadowed)" dashed />
-              <PlaneName scale={scale} at={end(wrong)} color="var(--ray-shadowed)">
-                M n
-              </PlaneName>
-              <PlaneArrow scale={scale} from={point} to={end(right)} color="var(--ray-lit)" width={4} />
-              <PlaneName scale={scale} at={end(right)} color="var(--ray-lit)" dx={-74}>
-                M⁻ᵀ n
-              </PlaneName>
-              <Handle
-                x={scale.x(point[0])}
-                y={scale.y(point[1])}
-                color="var(--ink)"
-                label="The point"
-                drag={(x, y) => {
-                  const [px, py] = scale.back(x, y);
-                  const [ux, uy] = [px - (shear * py) / squash, py / squash];
-                  setTurn(((Math.atan2(uy, ux) * 180) / Math.PI + 360) % 360);
-                }}
-              />
-            </>
-          )}
-        </Plot>
+        <div class="beside">
+          <Plot reach={[4.4, 2.45]} label="A sheared circle with a tangent and two normals">
+            {(scale) => (
+              <>
+                <polygon
+                  points={outline.map(([x, y]) => `${scale.x(x)},${scale.y(y)}`).join(" ")}
+                  fill="var(--solid)"
+                  fill-opacity={0.14}
+                  stroke="var(--ink)"
+                  stroke-width={3}
+                />
+                <PlaneArrow
+                  scale={scale}
+                  from={end(tangent, -1.6)}
+                  to={end(tangent, 1.6)}
+                  color="var(--ray-camera)"
+                  width={2.5}
+                />
+                <PlaneName scale={scale} at={end(tangent, 1.6)} color="var(--ray-camera)">
+                  M t
+                </PlaneName>
+                <PlaneArrow scale={scale} from={point} to={end(wrong)} color="var(--ray-shadowed)" dashed />
+                <PlaneName scale={scale} at={end(wrong)} color="var(--ray-shadowed)">
+                  M n
+                </PlaneName>
+                <PlaneArrow scale={scale} from={point} to={end(right)} color="var(--ray-lit)" width={4} />
+                <PlaneName scale={scale} at={end(right)} color="var(--ray-lit)" dx={-40} dy={-20}>
+                  M⁻ᵀ n
+                </PlaneName>
+                <Handle
+                  x={scale.x(point[0])}
+                  y={scale.y(point[1])}
+                  color="var(--ink)"
+                  label="The point"
+                  drag={(x, y) => {
+                    const [px, py] = scale.back(x, y);
+                    const [ux, uy] = [px - (shear * py) / squash, py / squash];
+                    setTurn(((Math.atan2(uy, ux) * 180) / Math.PI + 360) % 360);
+                  }}
+                />
+              </>
+            )}
+          </Plot>
+          <div class="inset below low">
+            <RenderedImage
+              session={session}
+              width={width}
+              height={height}
+              label="The sheared ball"
+              mistaken={mistake.picture}
+            />
+          </div>
+        </div>
       }
       controls={
         <>
@@ -100,6 +117,7 @@ function NormalsFigure() {
             text={fixed(squash)}
             change={setSquash}
           />
+          <MistakeSwitch name="transform normals by M" mistake={mistake} />
         </>
       }
     >
@@ -125,6 +143,7 @@ function NormalsFigure() {
         (<Sym color="var(--ray-shadowed)">M</Sym> <Sym vector>n</Sym>) · (<Sym>M</Sym> <Sym vector>t</Sym>) ≠
         0: the usual mistake
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

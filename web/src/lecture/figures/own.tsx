@@ -1,9 +1,21 @@
 import { useContext, useState } from "preact/hooks";
+import { reducedSize } from "../../mistakes/choices";
 import type { PictureInfo, Setting } from "../../protocol";
 import { OwnSceneContext, useSceneFile } from "../context";
 import { ExplainedImage } from "../explained";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import type { Topic } from "../topic";
+
+interface Step {
+  id: string;
+  name: string;
+  picture: string;
+  options: readonly (readonly [string, string])[];
+  words: string;
+  /** Name of a common mistake and its label, if the step's picture shows colours. */
+  mistake?: readonly [string, string];
+}
 
 /** Steps of the lecture for any scene: the image that is shown, and the render options. */
 const steps = [
@@ -30,6 +42,7 @@ const steps = [
       ["shadows", "off"],
     ],
     words: "the light of all lights, without testing for occlusion",
+    mistake: ["no-cosine", "forget the cosine"],
   },
   {
     id: "shadows",
@@ -40,6 +53,7 @@ const steps = [
       ["shadows", "on"],
     ],
     words: "a shadow ray to each light",
+    mistake: ["shadows-endless", "shadow rays do not end at the light"],
   },
   {
     id: "first",
@@ -50,19 +64,29 @@ const steps = [
       ["shadows", "on"],
     ],
     words: "mirrored and transmitted rays, once",
+    mistake: ["mirror-along", "forget the factor 2 of the mirrored direction"],
   },
-  { id: "all", name: "All", picture: "color", options: [], words: "all options as the scene sets them" },
-] as const;
+  {
+    id: "all",
+    name: "All",
+    picture: "color",
+    options: [],
+    words: "all options as the scene sets them",
+    mistake: ["secondary-unshadowed", "no shadow rays in mirrors and behind glass"],
+  },
+] as const satisfies readonly Step[];
 type Id = (typeof steps)[number]["id"];
 
 function OwnFigure() {
   const own = useContext(OwnSceneContext);
   const [id, setId] = useState<Id>("depth");
   const [head, setHead] = useState<PictureInfo | null>(null);
-  const step = steps.find((known) => known.id === id) ?? steps[0];
+  const step: Step = steps.find((known) => known.id === id) ?? steps[0];
   const options: Setting[] = step.options.map(([name, value]) => ({ name, value }));
   const { session, size, refused } = useSceneFile(own, options, step.picture);
   const [width, height] = size;
+  const [name = null, label = ""] = step.mistake ?? [];
+  const mistake = useFigureMistake(session, name, reducedSize(size, 240), [id, own.text, head?.hash]);
   return (
     <Figure
       stage={
@@ -72,16 +96,20 @@ function OwnFigure() {
           height={height}
           label={`Your scene: ${step.name}`}
           scene={`${id} ${own.text ?? ""}`}
+          mistaken={mistake.picture}
           onResult={setHead}
         />
       }
       controls={
-        <Choice
-          label="Step"
-          value={id}
-          values={steps.map((known) => [known.id, known.name] as const)}
-          change={(next) => setId(next)}
-        />
+        <>
+          <Choice
+            label="Step"
+            value={id}
+            values={steps.map((known) => [known.id, known.name] as const)}
+            change={(next) => setId(next)}
+          />
+          {step.mistake && <MistakeSwitch name={label} mistake={mistake} />}
+        </>
       }
     >
       <Equation
@@ -100,6 +128,7 @@ function OwnFigure() {
       <Equation numbers="click a pixel, or select it with the arrow keys">
         <Sym>pixel</Sym> = Σ of the terms beside the image
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -2,6 +2,7 @@ import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
 import { usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
 import { RenderedImage } from "../rendered";
@@ -29,6 +30,8 @@ function PinholeFigure() {
     `PinholeCamera { center 0 0.25 1 direction 0 -0.06 -1 up 0 1 0 angle ${angle} hole ${hole} filmDistance ${film} }\n`,
   );
   const session = useScene(text, [{ name: "samples", value: "48" }]);
+  // This is small, because a blurred picture needs many samples.
+  const mistake = useFigureMistake(session, "turned", [0.4 * width, 0.4 * height], [text]);
   const [z, h] = top;
   const image = (-h * film) / z;
   const blur = hole * (1 + film / z);
@@ -41,6 +44,7 @@ function PinholeFigure() {
             width={width}
             height={height}
             label="Three balls of equal size, seen through the hole"
+            mistaken={mistake.picture}
           />
           <Plot
             reach={[2.95, 1.9]}
@@ -111,6 +115,7 @@ function PinholeFigure() {
             text={fixed(film)}
             change={setFilm}
           />
+          <MistakeSwitch name="forget the minus sign" mistake={mistake} />
         </>
       }
     >
@@ -142,6 +147,7 @@ function PinholeFigure() {
       >
         <Sym>angle</Sym> = 2 atan(<Sym>half film</Sym> / <Sym>f</Sym>)
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -1,9 +1,10 @@
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
-import { draw } from "../../viewer/picture";
 import { usePageBackground, useScene } from "../context";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneName, Plot } from "../plot";
+import { RenderedImage } from "../rendered";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
@@ -32,25 +33,19 @@ function ProjectionFigure() {
     : `PerspectiveCamera { center 0 0.55 ${distance} direction 0 ${-0.35 / Math.max(distance, 6)} -1 up 0 1 0 angle ${angle} }`;
   const text = scene.replace(/^.*\n/, `${camera}\n`);
   const session = useScene(text, [{ name: "samples", value: "4" }]);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  useEffect(() => {
-    session.send({ kind: "size", width, height });
-    return session.on((event, bytes) => {
-      if (event.kind === "picture" && canvas.current)
-        draw(canvas.current, event.head.width, event.head.height, bytes);
-    });
-  }, [session]);
+  const name = parallel ? "size" : "angle-inverted";
+  const mistake = useFigureMistake(session, name, [width / 2, height / 2], [text]);
   return (
     <Figure
       stage={
         <div class="halves">
-          <div class="stage render" style={{ aspectRatio: `${width} / ${height}` }}>
-            <canvas
-              ref={canvas}
-              role="img"
-              aria-label="The image: three spheres of equal size, one behind the other"
-            />
-          </div>
+          <RenderedImage
+            session={session}
+            width={width}
+            height={height}
+            label="The image: three spheres of equal size, one behind the other"
+            mistaken={mistake.picture}
+          />
           <Plot reach={[4.4, 5]} middle={[0, 1.4]} aspect={width / height} label="The rays from above">
             {(scale) => (
               <>
@@ -95,15 +90,21 @@ function ProjectionFigure() {
         </div>
       }
       controls={
-        <Slider
-          label="angle"
-          value={angle}
-          min={1}
-          max={110}
-          step={1}
-          text={parallel ? "parallel" : `${angle}°`}
-          change={setAngle}
-        />
+        <>
+          <Slider
+            label="angle"
+            value={angle}
+            min={1}
+            max={110}
+            step={1}
+            text={parallel ? "parallel" : `${angle}°`}
+            change={setAngle}
+          />
+          <MistakeSwitch
+            name={parallel ? "size without the half" : "forget the reciprocal"}
+            mistake={mistake}
+          />
+        </>
       }
     >
       <Equation
@@ -122,6 +123,7 @@ function ProjectionFigure() {
       <Equation numbers={parallel ? <b>1 : 1</b> : <b>1 : {fixed((distance + 5.2) / distance, 2)}</b>}>
         the sphere in front appears larger than the last
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -3,11 +3,16 @@ import { add, type Eye, length, mul, sub, type Vec } from "../../explain/space";
 import { fixed, Slider } from "../../ui/slider";
 import { useCast, usePageBackground, useScene } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Equation, Figure, Switch, Sym } from "../parts";
 import { Point3 } from "../point";
+import { RenderedImage } from "../rendered";
 import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
+
+/** Size of the picture with the mistake. */
+const [width, height] = [240, 180];
 
 function RayFigure() {
   const background = usePageBackground();
@@ -30,6 +35,8 @@ function RayFigure() {
   const [tip, setTip] = useState<Vec>([-2, 0.32, 0.3]);
   const [t, setT] = useState(2);
   const [normalised, setNormalised] = useState(false);
+  const picture = useScene(text);
+  const mistake = useFigureMistake(picture, "hits-behind", [width, height], [text]);
   const raw = sub(tip, origin);
   const direction = normalised ? mul(1 / Math.max(1e-6, length(raw)), raw) : raw;
   const cast = useCast(session, origin, direction, text);
@@ -38,62 +45,76 @@ function RayFigure() {
   return (
     <Figure
       stage={
-        <Stage session={session} eye={eye} setEye={setEye} label="A ray in space, with a point on it">
-          {(view) => (
-            <>
-              <Line
-                view={view}
-                from={origin}
-                to={add(origin, mul(8, direction))}
-                color="var(--ray-camera)"
-                width={1.5}
-                dashed
+        <div class="beside">
+          <Stage session={session} eye={eye} setEye={setEye} label="A ray in space, with a point on it">
+            {(view) => (
+              <>
+                <Line
+                  view={view}
+                  from={origin}
+                  to={add(origin, mul(8, direction))}
+                  color="var(--ray-camera)"
+                  width={1.5}
+                  dashed
+                />
+                <Line
+                  view={view}
+                  from={origin}
+                  to={add(origin, mul(-3, direction))}
+                  color="var(--soft)"
+                  width={1}
+                  dashed
+                />
+                <Arrow view={view} from={origin} dir={direction} color="var(--ray-camera)" width={4} />
+                {hit && <Dot view={view} at={hit.point} color="var(--ray-lit)" radius={6} />}
+                <Dot view={view} at={point} color="var(--ray-shadowed)" radius={8} />
+                <Name view={view} at={point} color="var(--ray-shadowed)">
+                  P({fixed(t)})
+                </Name>
+                <Name view={view} at={tip} color="var(--ray-camera)" dy={26}>
+                  d
+                </Name>
+                <Name view={view} at={origin} dx={-6} dy={-18}>
+                  o
+                </Name>
+                <Point3
+                  view={view}
+                  at={tip}
+                  color="var(--ray-camera)"
+                  label="End of the direction"
+                  move={setTip}
+                />
+                <Point3
+                  view={view}
+                  at={origin}
+                  color="var(--ink)"
+                  label="Origin of the ray"
+                  move={(to) => {
+                    setTip(add(tip, sub(to, origin)));
+                    setOrigin(to);
+                  }}
+                />
+              </>
+            )}
+          </Stage>
+          {mistake.on && (
+            <div class="inset below">
+              <RenderedImage
+                session={picture}
+                width={width}
+                height={height}
+                label="The objects"
+                mistaken={mistake.picture}
               />
-              <Line
-                view={view}
-                from={origin}
-                to={add(origin, mul(-3, direction))}
-                color="var(--soft)"
-                width={1}
-                dashed
-              />
-              <Arrow view={view} from={origin} dir={direction} color="var(--ray-camera)" width={4} />
-              {hit && <Dot view={view} at={hit.point} color="var(--ray-lit)" radius={6} />}
-              <Dot view={view} at={point} color="var(--ray-shadowed)" radius={8} />
-              <Name view={view} at={point} color="var(--ray-shadowed)">
-                P({fixed(t)})
-              </Name>
-              <Name view={view} at={tip} color="var(--ray-camera)" dy={26}>
-                d
-              </Name>
-              <Name view={view} at={origin} dx={-6} dy={-18}>
-                o
-              </Name>
-              <Point3
-                view={view}
-                at={tip}
-                color="var(--ray-camera)"
-                label="End of the direction"
-                move={setTip}
-              />
-              <Point3
-                view={view}
-                at={origin}
-                color="var(--ink)"
-                label="Origin of the ray"
-                move={(to) => {
-                  setTip(add(tip, sub(to, origin)));
-                  setOrigin(to);
-                }}
-              />
-            </>
+            </div>
           )}
-        </Stage>
+        </div>
       }
       controls={
         <>
           <Slider label="t" value={t} min={-2} max={6} step={0.01} text={fixed(t)} change={setT} />
           <Switch label="d of length 1" on={normalised} change={setNormalised} />
+          <MistakeSwitch name="count hits behind the origin" mistake={mistake} />
         </>
       }
     >
@@ -127,6 +148,7 @@ function RayFigure() {
       >
         <Sym>t</Sym> &gt; 0 in front, <Sym>t</Sym> &lt; 0 behind
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

@@ -2,11 +2,13 @@ import { useState } from "preact/hooks";
 import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { usePageBackground, useScene } from "../context";
+import { MistakeCode, MistakeSwitch, useFigureMistake } from "../mistaken";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { RenderedImage } from "../rendered";
 import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
+const [width, height] = [96, 54];
 const counts = [1, 2, 4, 8, 16, 32, 64, 128];
 const filters = [
   ["box", "Box"],
@@ -37,15 +39,17 @@ function SamplesFigure() {
   const options = [{ name: "samples", value: String(samples) }];
   if (samples > 1) options.push({ name: "filter", value: filter });
   const session = useScene(text, options);
+  const mistake = useFigureMistake(session, "pixel-corner", [width, height], [text, samples, filter]);
   return (
     <Figure
       stage={
         <RenderedImage
           session={session}
-          width={96}
-          height={54}
+          width={width}
+          height={height}
           squares
           label="An image with few pixels, each shown as a square"
+          mistaken={mistake.picture}
           onResult={setHead}
         />
       }
@@ -61,14 +65,16 @@ function SamplesFigure() {
             change={setStep}
           />
           <Choice label="Filter" value={filter} values={filters} change={(value) => setFilter(value)} />
+          <MistakeSwitch name="rays through the corners of pixels" mistake={mistake} />
         </>
       }
     >
       <Equation
         numbers={
           <>
-            96 × 54 pixels, <b>{samples}</b> {samples === 1 ? "ray through each center" : "rays through each"}
-            , {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in total` : "…"}
+            {width} × {height} pixels, <b>{samples}</b>{" "}
+            {samples === 1 ? "ray through each center" : "rays through each"},{" "}
+            {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in total` : "…"}
           </>
         }
       >
@@ -77,6 +83,7 @@ function SamplesFigure() {
         <sub>i</sub>) / Σ <Sym>w</Sym>
         <sub>i</sub>
       </Equation>
+      <MistakeCode mistake={mistake} />
     </Figure>
   );
 }

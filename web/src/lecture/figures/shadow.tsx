@@ -1,7 +1,8 @@
 import { useState } from "preact/hooks";
 import { add, type Eye, length, mul, sub, unit, type Vec } from "../../explain/space";
+import type { Traversal } from "../../protocol";
 import { fixed, Slider, short } from "../../ui/slider";
-import { useCast, usePageBackground, useScene } from "../context";
+import { useCast, usePageBackground, useScene, useWalk } from "../context";
 import { Dot, Line, Name } from "../draw";
 import { Equation, Figure, Mistake, Sym } from "../parts";
 import { Point3 } from "../point";
@@ -41,9 +42,10 @@ function ShadowFigure() {
   const hits = (cast?.tests ?? []).filter(
     ({ t, object }) => t != null && t > 0 && (wrong || t < distance) && object !== 0,
   );
-  const all = cast?.tests.length ?? 0;
-  // Any hit ends the search, in the order of the text.
-  const any = hits[0] && cast ? cast.tests.indexOf(hits[0]) + 1 : all;
+  // With the vector to the light as direction, the light is at t = 1.
+  const segment = { structure: "nothing", origin: start, direction: away, t_max: wrong ? null : 1 } as const;
+  const any = useWalk(session, { ...segment, any: true }, text);
+  const closest = useWalk(session, { ...segment, any: false }, text);
   const blocker = hits.toSorted((a, b) => (a.t ?? 0) - (b.t ?? 0))[0] ?? null;
   const t = blocker?.t ?? null;
   const color = blocker ? "var(--ray-shadowed)" : "var(--ray-lit)";
@@ -133,7 +135,7 @@ function ShadowFigure() {
       <Equation
         numbers={
           <>
-            any hit: <b>{any}</b> {any === 1 ? "test" : "tests"}, closest hit: <b>{all}</b> (
+            any hit: <b>{counted(any)}</b>, closest hit: <b>{counted(closest)}</b> (
             {cast?.tests
               .map((test) => `${test.name.split(" ")[0]} ${test.t == null ? "–" : short(test.t, 3)}`)
               .join(", ")}
@@ -145,6 +147,12 @@ function ShadowFigure() {
       </Equation>
     </Figure>
   );
+}
+
+/** Returns the number of objects that a ray was tested against, in words. */
+function counted(walk: Traversal | null): string {
+  if (!walk) return "…";
+  return walk.tests === 1 ? "1 test" : `${walk.tests} tests`;
 }
 
 export const shadow: Topic = {

@@ -3,7 +3,7 @@ import { Boxes } from "../../explain/edges";
 import { add, type Eye, length, mul, sub, type Vec } from "../../explain/space";
 import type { Structure, Traversal, TraversalStep } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
-import { useAnswer, usePageBackground, useScene } from "../context";
+import { usePageBackground, useScene, useWalk } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
@@ -44,10 +44,9 @@ function StructuresFigure() {
   const [tip, setTip] = useState<Vec>([-4.2, 0.72, 0]);
   const [step, setStep] = useState(1);
   const direction = sub(tip, origin);
-  const walk = useAnswer(session, { kind: "walk", structure, origin, direction }, "walk", text)?.walk ?? null;
-  const counted = structures.map(
-    ([name]) =>
-      useAnswer(session, { kind: "walk", structure: name, origin, direction }, "walk", text)?.walk ?? null,
+  const walk = useWalk(session, { structure, origin, direction, t_max: null, any: false }, text);
+  const counted = structures.map(([name]) =>
+    useWalk(session, { structure: name, origin, direction, t_max: null, any: false }, text),
   );
   const at = walk ? Math.round(step * (walk.steps.length - 1)) : 0;
   const now = walk?.steps[at] ?? null;

@@ -1,0 +1,66 @@
+import { useEffect, useState } from "preact/hooks";
+import type { Session } from "../engine/engine";
+import { describeChange } from "../mistakes/choices";
+import { type MistakenPicture, useMistaken } from "../mistakes/mistaken";
+import type { MistakeChoice } from "../protocol";
+import { Equation, Mistake, Wrong } from "./parts";
+
+/** Common mistake that a figure can make, which the library renders. */
+export interface FigureMistake {
+  on: boolean;
+  change(on: boolean): void;
+  /** The picture with the mistake, if it is on. */
+  picture: MistakenPicture | null;
+  /** Description and code of the mistake. */
+  choice: MistakeChoice | null;
+}
+
+/**
+ * Returns the state of a mistake of the library's table in a figure, which is off at first. Without
+ * a name, there is no picture. `changes` are the values that change the session's scene.
+ */
+export function useFigureMistake(
+  session: Session,
+  name: string | null,
+  size: [number, number],
+  changes: unknown[],
+): FigureMistake {
+  const [on, change] = useState(false);
+  const [choices, setChoices] = useState<MistakeChoice[]>([]);
+  const { picture } = useMistaken(session, on && name !== null ? { name, value: null, size } : null, changes);
+  useEffect(() => {
+    if (!on) return;
+    let isLatest = true;
+    session
+      .ask({ kind: "mistakes" }, "mistakes")
+      .then(({ mistakes }) => isLatest && setChoices(mistakes))
+      .catch(() => {});
+    return () => {
+      isLatest = false;
+    };
+  }, [session, on]);
+  const choice = (on && choices.find((known) => known.name === name)) || null;
+  return { on, change, picture, choice };
+}
+
+/** Switch that makes the mistake of a figure. */
+export function MistakeSwitch({ name, mistake }: { name: string; mistake: FigureMistake }) {
+  return <Mistake name={name} on={mistake.on} change={mistake.change} />;
+}
+
+/** Right and wrong code of a figure's mistake, while it is on. */
+export function MistakeCode({ mistake: { on, choice, picture } }: { mistake: FigureMistake }) {
+  if (!on || !choice) return null;
+  return (
+    <Equation
+      numbers={
+        <Wrong>
+          <code>{choice.wrong}</code>
+          {picture && <p>{describeChange(picture.changed)}</p>}
+        </Wrong>
+      }
+    >
+      <code>{choice.right}</code>
+    </Equation>
+  );
+}
