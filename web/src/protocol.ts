@@ -394,7 +394,12 @@ height: number,
 /**
  * Fraction of the pixels whose eight-bit colour differs from the correct picture.
  */
-changed: number, } | { "kind": "part", 
+changed: number, 
+/**
+ * Description and code of the mistake for the requested value; `None` for the correct
+ * picture.
+ */
+mistake: MistakeChoice | null, } | { "kind": "part", 
 /**
  * Number of changes to the scene, camera and options before this picture.
  */

@@ -17,17 +17,20 @@ pub(crate) struct MistakenPicture {
     pub pixels: Vec<u8>,
     /// Fraction of the pixels that differ from the correct picture.
     pub changed: f64,
+    /// Description and code of the mistake.
+    pub mistake: Option<MistakeChoice>,
 }
 
 /// Returns the mistakes of the table.
 pub(crate) fn choices(compiled: &CompiledDocument) -> Vec<MistakeChoice> {
     let formulas = Formulas::of(compiled.scene(), compiled.world.rules());
-    MISTAKES.iter().copied().flatten().map(|mistake| choice(mistake, compiled, &formulas)).collect()
+    MISTAKES.iter().copied().flatten().map(|mistake| choice(mistake, compiled, &formulas, None)).collect()
 }
 
-fn choice(mistake: &Mistake, compiled: &CompiledDocument, formulas: &Formulas) -> MistakeChoice {
+/// Returns the description and the code of a mistake for a value, or for its first value.
+fn choice(mistake: &Mistake, compiled: &CompiledDocument, formulas: &Formulas, value: Option<f32>) -> MistakeChoice {
     let values = mistake.values.numbers(compiled.world.lights().len());
-    let value = values.first().copied().unwrap_or_default();
+    let value = value.or(values.first().copied()).unwrap_or_default();
     let [right, wrong] = mistake.code(value, formulas);
     MistakeChoice {
         name: mistake.name.into(),
@@ -61,7 +64,9 @@ pub(crate) fn picture(
     let render = |mistake| mistaken_picture(compiled.scene(), &compiled.world, &job, mistake);
     let (right, wrong) = (render(None), render(mistake.map(|mistake| (mistake, value))));
     let changed = right.iter().zip(&wrong).filter(|(right, wrong)| right != wrong).count();
+    let formulas = Formulas::of(compiled.scene(), compiled.world.rules());
     Ok(MistakenPicture {
+        mistake: mistake.map(|mistake| choice(mistake, compiled, &formulas, Some(value))),
         pixels: wrong.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect(),
         changed: changed as f64 / right.len().max(1) as f64,
     })

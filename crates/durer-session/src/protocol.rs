@@ -392,6 +392,9 @@ pub enum Event {
         height: u32,
         /// Fraction of the pixels whose eight-bit colour differs from the correct picture.
         changed: f64,
+        /// Description and code of the mistake for the requested value; `None` for the correct
+        /// picture.
+        mistake: Option<MistakeChoice>,
     },
     /// Blocks of a picture that a worker has rendered for the first worker. The payload contains
     /// a saved part.

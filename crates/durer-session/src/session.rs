@@ -4,6 +4,7 @@ mod disk;
 
 use crate::document::{CompiledDocument, Document};
 use crate::fields::NewValue;
+use crate::mistakes::MistakenPicture;
 use crate::motion::{camera_of_kind, distance, moved, set_field, state};
 use crate::outlines::{light_markers, outlines};
 use crate::protocol::{CameraState, Event, Finding, JobState, Motion, NamedChoice, Request, SceneItem, SceneSummary};
@@ -246,8 +247,9 @@ impl Session {
                 let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
                 let compiled = compiled.ok_or("the scene has errors")?;
                 let job = Job { width, height, ..self.viewer.job_of(compiled, "color")? };
-                let shown = mistakes::picture(compiled, job, name.as_deref(), value)?;
-                send_message((Event::Mistaken { width, height, changed: shown.changed }, shown.pixels));
+                let MistakenPicture { pixels, changed, mistake } =
+                    mistakes::picture(compiled, job, name.as_deref(), value)?;
+                send_message((Event::Mistaken { width, height, changed, mistake }, pixels));
             }
             Request::Cast { origin, direction, t_max } => {
                 let ray = ray_of(origin, direction, t_max)?;

@@ -373,8 +373,9 @@ fn mistakes_are_listed_and_rendered() {
     let mut render = |name: Option<&str>| {
         let ask = json!({ "kind": "mistake", "name": name, "value": null, "width": 40, "height": 30 });
         let mut answers = page.ask(&ask.to_string());
-        let (Event::Mistaken { width: 40, height: 30, changed }, bytes) = answers.remove(0) else { panic!() };
+        let (Event::Mistaken { width: 40, height: 30, changed, mistake }, bytes) = answers.remove(0) else { panic!() };
         assert_eq!(bytes.len(), 4 * 40 * 30);
+        assert_eq!(mistake.map(|mistake| mistake.name).as_deref(), name);
         (changed, bytes)
     };
     let (none, right) = render(None);

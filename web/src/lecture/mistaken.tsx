@@ -1,4 +1,4 @@
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { describeChange } from "../mistakes/choices";
 import { type MistakenPicture, useMistaken } from "../mistakes/mistaken";
@@ -26,21 +26,8 @@ export function useFigureMistake(
   changes: unknown[],
 ): FigureMistake {
   const [on, change] = useState(false);
-  const [choices, setChoices] = useState<MistakeChoice[]>([]);
   const { picture } = useMistaken(session, on && name !== null ? { name, value: null, size } : null, changes);
-  useEffect(() => {
-    if (!on) return;
-    let isLatest = true;
-    session
-      .ask({ kind: "mistakes" }, "mistakes")
-      .then(({ mistakes }) => isLatest && setChoices(mistakes))
-      .catch(() => {});
-    return () => {
-      isLatest = false;
-    };
-  }, [session, on]);
-  const choice = (on && choices.find((known) => known.name === name)) || null;
-  return { on, change, picture, choice };
+  return { on, change, picture, choice: picture?.mistake ?? null };
 }
 
 /** Switch that makes the mistake of a figure. */

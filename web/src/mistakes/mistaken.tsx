@@ -1,5 +1,6 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
+import type { MistakeChoice } from "../protocol";
 import { draw } from "../viewer/picture";
 
 /** Picture that a program with a mistake would render. */
@@ -8,6 +9,8 @@ export interface MistakenPicture {
   height: number;
   /** Fraction of the pixels that differ from the correct picture. */
   changed: number;
+  /** Description and code of the mistake; `null` for the correct picture. */
+  mistake: MistakeChoice | null;
   pixels: Uint8Array<ArrayBuffer>;
 }
 

@@ -126,6 +126,8 @@ function Comparison({ session, mistake, right, size, changes }: ComparisonProps)
   const [value, setValue] = useState<number | null>(null);
   const { picture, refused } = useMistaken(session, { name: mistake.name, value, size }, changes);
   const first = mistake.values[0] ?? 0;
+  // The text for the selected value.
+  const shown = picture?.mistake ?? mistake;
   return (
     <div class="comparison">
       <div class="pair">
@@ -138,13 +140,11 @@ function Comparison({ session, mistake, right, size, changes }: ComparisonProps)
       {mistake.values.length > 1 && (
         <ValueField values={mistake.values} value={value ?? first} change={setValue} />
       )}
+      {shown.description !== mistake.description && <p>{shown.description}</p>}
       <div class="pair">
-        <Code title="Right" text={mistake.right} />
-        <Code title="Wrong" text={mistake.wrong} />
+        <Code title="Right" text={shown.right} />
+        <Code title="Wrong" text={shown.wrong} />
       </div>
-      {value !== null && value !== first && (
-        <p class="soft">The description and the code belong to the value {short(first)}.</p>
-      )}
     </div>
   );
 }

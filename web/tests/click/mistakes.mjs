@@ -61,7 +61,7 @@ await test("a value of a mistake is selected", wide, async (page) => {
   const before = await difference(page);
   const values = page.locator(".comparison select");
   await values.selectOption({ index: 1 });
-  await page.getByText("belong to the value").waitFor();
+  await page.locator(".comparison p", { hasText: /^the ambient light is multiplied by/ }).waitFor();
   await told(page);
   await page.waitForFunction(() => document.querySelector(".comparison strong"));
   if ((await difference(page)) === before) throw new Error("both values give the same picture");

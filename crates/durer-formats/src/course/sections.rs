@@ -15,17 +15,12 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, CsgOperation, Group, Material, NamedTexture, Object, ObjectKind, Spanned};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Words that are allowed in a group. The first [`OBJECTS`] of these words begin objects.
-#[rustfmt::skip]
-pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
-    "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
-    "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
-    "Union", "Merge", "Intersection", "Difference", "Xor",
-    "MaterialIndex", "numObjects", "Grid", "define",
-];
-
-/// Number of words in [`IN_GROUP`] that begin an object, and that are suggested inside a transform.
-pub(super) const OBJECTS: usize = 21;
+/// Returns the words that begin an object, in a group or in a transform.
+pub(super) fn object_words() -> impl Iterator<Item = &'static str> {
+    let shapes = Primitive::kinds().into_iter().map(|shape| shape.own_keyword());
+    let solids = ["Union", "Merge", "Intersection", "Difference", "Xor"];
+    ["Group", "Transform", "use"].into_iter().chain(shapes).chain(["TriangleMesh", "HeightField"]).chain(solids)
+}
 
 impl Reader<'_, '_> {
     /// Reads the whole file.
@@ -425,7 +420,8 @@ impl Reader<'_, '_> {
         } else if word == "Grid" {
             Some(self.voxels(span))
         } else {
-            self.unknown(word, span, "among objects", &IN_GROUP);
+            let known: Vec<_> = object_words().chain(["MaterialIndex", "numObjects", "Grid", "define"]).collect();
+            self.unknown(word, span, "among objects", &known);
             None
         };
         self.depth -= 1;

@@ -2,7 +2,7 @@
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
-use super::sections::{IN_GROUP, OBJECTS};
+use super::sections::object_words;
 use super::words::block_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, set};
@@ -32,8 +32,7 @@ impl Reader<'_, '_> {
                 self.error(error.help("write `MaterialIndex` before the `Transform`"));
                 self.skip_value();
             } else if block_of(&word) != Some("Group") {
-                let known: Vec<&str> =
-                    MatrixOp::words().into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
+                let known: Vec<&str> = MatrixOp::words().into_iter().chain(object_words()).collect();
                 self.unknown(&word, span, "in a transform", &known);
             } else {
                 objects += 1;

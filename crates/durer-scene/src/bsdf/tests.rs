@@ -11,6 +11,16 @@ use crate::math::fp;
 use crate::math::random::Random;
 
 #[test]
+fn every_lobe_has_a_case() {
+    // Delta lobes have no pdf to compare with.
+    let delta = ["Mirror", "Refraction", "Through"];
+    let cases: Vec<&str> = non_delta_lobes().iter().map(|(_, lobe)| lobe.name()).collect();
+    for name in Lobe::NAMES {
+        assert_ne!(cases.contains(name), delta.contains(name), "add a case for `{name}` to `non_delta_lobes`");
+    }
+}
+
+#[test]
 fn lobe_samples_agree_with_pdf() {
     // `cargo xtask validate` runs this test with a million samples for each lobe.
     let cells = DirectionGrid { rows: 60, columns: 80, samples: 200_000, fine: 12 };

@@ -104,6 +104,10 @@ impl DirectionGrid {
 ///
 /// Source: Wilson and Hilferty, *The Distribution of Chi-Square*, 1931.
 fn deviate(chi2: f64, freedom: f64) -> f64 {
+    // A lobe whose samples all fail, as by total internal reflection, leaves nothing to compare.
+    if freedom < 1.0 {
+        return 0.0;
+    }
     let spread = 2.0 / (9.0 * freedom);
     let third = f64::from(fp::pow((chi2 / freedom) as f32, 1.0 / 3.0));
     (third - (1.0 - spread)) / spread.sqrt()

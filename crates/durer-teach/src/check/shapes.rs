@@ -27,36 +27,15 @@ pub(super) fn triangle(object: &Object) -> Option<[Vec3; 3]> {
 
 /// Returns true if an object is a ball whose `center` and `radius` give its position and size.
 pub(super) fn is_ball(object: &Object) -> bool {
-    match shape(object) {
-        Some(Primitive::Sphere(_)) => true,
-        None
-        | Some(
-            Primitive::Plane(_)
-            | Primitive::Triangle(_)
-            | Primitive::Cuboid(_)
-            | Primitive::Cylinder(_)
-            | Primitive::Cone(_)
-            | Primitive::Torus(_)
-            | Primitive::Ellipsoid(_)
-            | Primitive::Quadric(_)
-            | Primitive::Disc(_)
-            | Primitive::Rectangle(_),
-        ) => false,
-    }
+    matches!(shape(object), Some(Primitive::Sphere(_)))
 }
 
 /// Returns a light if it is a point light. Only point lights have attenuation in the scene file.
 pub(super) fn point(light: &Light) -> Option<&PointLight> {
-    match light {
-        Light::Point(point) => Some(point),
-        Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => None,
-    }
+    if let Light::Point(point) = light { Some(point) } else { None }
 }
 
 /// Returns a light if it is a spotlight. Only spotlights have a cone in the scene file.
 pub(super) fn spot(light: &Light) -> Option<&SpotLight> {
-    match light {
-        Light::Spot(spot) => Some(spot),
-        Light::Directional(_) | Light::Point(_) | Light::Photometric(_) => None,
-    }
+    if let Light::Spot(spot) = light { Some(spot) } else { None }
 }

@@ -42,10 +42,7 @@ pub struct SceneVariant<'s> {
 
 /// Returns true if at least one light in the scene file has three attenuation coefficients.
 pub fn three_factors(scene: &Scene) -> bool {
-    let factors = |light: &Light| match light {
-        Light::Point(p) => p.attenuation.is_some() && p.falloff.is_none(),
-        Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => false,
-    };
+    let factors = |light: &Light| matches!(light, Light::Point(p) if p.attenuation.is_some() && p.falloff.is_none());
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
 
@@ -75,14 +72,8 @@ pub fn course_shape(geometry: &Geometry) -> Option<CourseShape> {
             Primitive::Sphere(_) => Some(CourseShape::Sphere),
             Primitive::Plane(_) => Some(CourseShape::Plane),
             Primitive::Triangle(_) => Some(CourseShape::Triangle),
-            Primitive::Cuboid(_)
-            | Primitive::Cylinder(_)
-            | Primitive::Cone(_)
-            | Primitive::Torus(_)
-            | Primitive::Ellipsoid(_)
-            | Primitive::Quadric(_)
-            | Primitive::Disc(_)
-            | Primitive::Rectangle(_) => None,
+            // The course has no other shapes.
+            _ => None,
         },
     }
 }

@@ -122,6 +122,9 @@ macro_rules! lobes {
         }
 
         impl Lobe<'_> {
+            /// Names of all types of lobes.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),+];
+
             /// Name of the type of the lobe, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }
