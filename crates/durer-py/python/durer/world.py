@@ -255,9 +255,10 @@ class World:
     @classmethod
     def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
         """Reads any scene that the command reads. Options are those of `durer render` that affect
-        reading: dialect, compat, strict, allow_outside, assets, memory, and for models up, view,
-        studio, environment, view_file, camera, fit, at. A model gets lights and a ground, which
-        rays can hit, unless `studio` is False. A model is framed for `size`, so pass `size` here;
+        reading: dialect, compat, strict, allow_outside, assets, memory, eye, target, fov, and for
+        models up, view, studio, environment, view_file, camera, fit, at. `eye` and `target` are
+        texts such as "0,1.5,-4". A model gets lights and a ground, which rays can hit, unless
+        `studio` is False. A model is framed for `size`, so pass `size` here;
         it also applies to `render`. `words` are options as written after `durer render SCENE`;
         those about rendering apply to all renders of the world. Raises SceneError with file, line
         and column."""
