@@ -10,6 +10,7 @@ use clap::Args;
 use durer::diag::Diagnostic;
 use durer::integrator::{Integrate, Integrator, IntegratorContext, IntegratorKind, RenderSettings};
 use durer::math::{Color, LUMINANCE, Ray64, Vec3};
+use durer::options::vector;
 use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::scene::Axis;
@@ -74,14 +75,6 @@ pub struct Grid {
 
 /// Largest allowed number of measuring points.
 const MAX_POINTS: usize = 1 << 20;
-
-fn vector(text: &str) -> Result<Vec3, String> {
-    let numbers: Vec<f32> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
-    match numbers[..] {
-        [x, y, z] if text.split(',').count() == 3 && numbers.iter().all(|x| x.is_finite()) => Ok(Vec3::new(x, y, z)),
-        _ => Err("expected three numbers, for example 0,0.8,0".into()),
-    }
-}
 
 fn grid(text: &str) -> Result<Grid, String> {
     let wanted = || "expected CORNER:EDGE:EDGE:NxM, for example 0,0.8,0:4,0,0:0,0,6:8x12".to_string();

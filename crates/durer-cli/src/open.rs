@@ -29,8 +29,10 @@ pub struct ParsedInput {
     quiet: bool,
 }
 
-/// File name that stands for standard input or standard output.
-pub const STREAM: &str = "-";
+/// True for the file name that stands for standard input or standard output.
+pub fn is_stream(path: &Path) -> bool {
+    path == Path::new("-")
+}
 
 /// Reads a scene file, or a scene from standard input if `path` is `-`. Files to which the latter
 /// refers are in the current folder.
@@ -40,7 +42,7 @@ fn load_file(
     files: &mut Files,
     diagnostics: &mut Diagnostics,
 ) -> Result<Option<LoadedScene>, Failure> {
-    if path != Path::new(STREAM) {
+    if !is_stream(path) {
         return load(path, options, files, diagnostics).map_err(report::unreadable);
     }
     let limit = options.memory.unwrap_or(u64::MAX);
@@ -60,7 +62,7 @@ pub fn read(
     quiet: bool,
     registry: &mut FileRegistry,
 ) -> Result<ParsedInput, Failure> {
-    if path != Path::new(STREAM) {
+    if !is_stream(path) {
         registry.register_input(path)?;
     }
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());

@@ -3,8 +3,7 @@
 use crate::autosave::Autosave;
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
-use crate::open::STREAM;
-use crate::open::{load_options, read};
+use crate::open::{is_stream, load_options, read};
 use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
 use crate::output::{STANDARD_OUTPUT, Target, with_suffix};
 use crate::report::rejected;
@@ -67,10 +66,9 @@ pub struct Pixel {
 
 /// Returns the file for the picture, which is the one given by `--output` or the default.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
-    let stem =
-        if args.scene == Path::new(STREAM) { "picture".as_ref() } else { args.scene.file_stem().unwrap_or_default() };
+    let stem = if is_stream(&args.scene) { "picture".as_ref() } else { args.scene.file_stem().unwrap_or_default() };
     match &args.output {
-        Some(output) if output == Path::new(STREAM) => STANDARD_OUTPUT.into(),
+        Some(output) if is_stream(output) => STANDARD_OUTPUT.into(),
         Some(output) => output.clone(),
         None => with_suffix(Path::new(stem), ".png"),
     }

@@ -3,7 +3,7 @@
 
 use crate::failure::{Failure, invalid_input};
 use crate::frames::FramesArgs;
-use crate::open::STREAM;
+use crate::open::is_stream;
 use crate::options::RenderArgs;
 use crate::picture::{Pixel, WatchState, render_picture};
 use crate::values::pixel;
@@ -67,9 +67,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
             }
             frames::run(&mut command.render, frames, moves)
         }
-        (None, true) if args.scene == Path::new(STREAM) => {
-            Err(invalid_input("--watch needs a file, not standard input"))
-        }
+        (None, true) if is_stream(&args.scene) => Err(invalid_input("--watch needs a file, not standard input")),
         (None, true) => {
             // Each change starts a new picture, so unfinished work is not saved.
             command.render.work.no_checkpoint = true;

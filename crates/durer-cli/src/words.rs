@@ -101,17 +101,16 @@ fn mentions(all: &[Entry], term: &str) -> Vec<String> {
         let text = text.to_lowercase();
         terms.iter().any(|term| text.contains(term))
     };
-    let first = |doc: &str| doc.split_inclusive(". ").next().unwrap_or_default().trim().to_string();
     let mut rows: Vec<(bool, String, String)> = Vec::new();
     for entry in all {
         let name = entry.keywords[0].0;
         if has(name) || has(&entry.doc) {
-            rows.push((!has(name), name.into(), first(&entry.doc)));
+            rows.push((!has(name), name.into(), first_sentence(&entry.doc).into()));
         }
         for field in &entry.fields {
             let Some((word, _)) = field.words.first() else { continue };
             if has(word) || has(&field.doc) {
-                rows.push((!has(word), format!("{name}: {word}"), first(&field.doc)));
+                rows.push((!has(word), format!("{name}: {word}"), first_sentence(&field.doc).into()));
             }
         }
     }
@@ -119,6 +118,10 @@ fn mentions(all: &[Entry], term: &str) -> Vec<String> {
     rows.truncate(24);
     let width = rows.iter().map(|(_, name, _)| name.chars().count()).max().unwrap_or(0);
     rows.into_iter().map(|(_, name, doc)| format!("  {name:<width$}  {doc}")).collect()
+}
+
+fn first_sentence(doc: &str) -> &str {
+    doc.split_inclusive(". ").next().unwrap_or_default().trim()
 }
 
 fn list(all: &[Entry], dialect: Option<Dialect>) {
@@ -130,7 +133,7 @@ fn list(all: &[Entry], dialect: Option<Dialect>) {
         print_line(chapter.title());
         for entry in of_chapter {
             let own = entry.keywords.iter().find(|keyword| dialect.is_none_or(|dialect| dialect.is_in(keyword.1)));
-            let first = entry.doc.split_inclusive(". ").next().unwrap_or_default().trim();
+            let first = first_sentence(&entry.doc);
             print_line(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));
         }
     }

@@ -220,11 +220,9 @@ impl<'a> Xml<'a> {
         if let quick_xml::Error::IllFormed(events) = error
             && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found } = events
         {
-            let is_open = |span: &Span| {
-                let rest = &self.text[(span.start as usize).saturating_sub(self.skipped)..];
-                let name = rest.trim_start_matches('<').strip_prefix(found.as_str());
-                name.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || "_-.:".contains(c)))
-            };
+            let name =
+                |span: &Span| self.text.get(span.start as usize - self.skipped..span.end as usize - self.skipped);
+            let is_open = |span: &Span| name(span) == Some(found.as_str());
             let message = match self.open.iter().any(is_open) {
                 true => format!("`</{found}>` comes before `</{expected}>`"),
                 false => format!("`</{found}>` closes an element that is not open"),

@@ -55,14 +55,13 @@ pub(crate) fn picture(
     }
     let is_affordable = pixels.saturating_mul(job.sampling.samples().into()) <= MAX_SAMPLES;
     let job = if is_affordable { job } else { Job { sampling: Sampling::Center, ..job } };
-    let mistake = match name {
-        Some(name) => Some(mistake_by_name(name).ok_or_else(|| format!("there is no mistake `{name}`"))?),
-        None => None,
-    };
+    let by_name = |name| mistake_by_name(name).ok_or_else(|| format!("there is no mistake `{name}`"));
+    let mistake = name.map(by_name).transpose()?;
     let first = |mistake: &Mistake| mistake.values.numbers(compiled.world.lights().len()).first().copied();
     let value = value.filter(|value| value.is_finite()).or(mistake.and_then(first)).unwrap_or_default();
     let render = |mistake| mistaken_picture(compiled.scene(), &compiled.world, &job, mistake);
-    let (right, wrong) = (render(None), render(mistake.map(|mistake| (mistake, value))));
+    let right = render(None);
+    let wrong = mistake.map_or_else(|| right.clone(), |mistake| render(Some((mistake, value))));
     let changed = right.iter().zip(&wrong).filter(|(right, wrong)| right != wrong).count();
     let formulas = Formulas::of(compiled.scene(), compiled.world.rules());
     Ok(MistakenPicture {

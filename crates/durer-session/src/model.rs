@@ -14,14 +14,15 @@ const MAX_NODES: usize = 2000;
 /// Returns the objects of a scene as a tree of groups.
 pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<SceneNode> {
     let scene = compiled.scene();
-    let is_numbered = scene.objects().filter(|object| is_leaf(object)).count() == compiled.world.objects().len();
+    let is_whole = |object: &Object| !matches!(object.node, ObjectKind::Solid(..));
+    let is_numbered = scene.objects().all(is_whole)
+        && scene.objects().filter(|object| is_leaf(object)).count() == compiled.world.objects().len();
     let mut listing = Listing { compiled, left: MAX_NODES, next: is_numbered.then_some(0) };
     let root = scene.root.iter().flat_map(|group| &group.objects);
     root.map_while(|object| listing.node(object)).collect()
 }
 
-/// True for objects that the renderer numbers. Solids count as one, although some are rendered as
-/// several pieces.
+/// True for objects that the renderer numbers.
 fn is_leaf(object: &Object) -> bool {
     !matches!(object.node, ObjectKind::Group(_) | ObjectKind::Transform(..))
 }
@@ -32,7 +33,8 @@ struct Listing<'a> {
     /// Number of nodes that may still be listed.
     left: usize,
     /// Number of the next object in the order of rendering, or `None` if the objects of the scene
-    /// and those that are rendered do not correspond.
+    /// and those that are rendered do not correspond, for example because a solid is rendered as
+    /// several pieces.
     next: Option<u32>,
 }
 
@@ -41,13 +43,10 @@ impl Listing<'_> {
     /// reached.
     fn node(&mut self, object: &Object) -> Option<SceneNode> {
         self.left = self.left.checked_sub(1)?;
-        let number = self.next.filter(|_| is_leaf(object));
-        if let Some(next) = self.next.as_mut().filter(|_| is_leaf(object)) {
-            *next += 1;
-        }
-        let is_solid = matches!(object.node, ObjectKind::Solid(..));
-        let children = if is_solid { &[] } else { object.node.children() };
-        let nodes = children.iter().map_while(|object| self.node(object)).collect();
+        let is_leaf = is_leaf(object);
+        let number = self.next.filter(|_| is_leaf);
+        self.next = self.next.map(|next| next + u32::from(is_leaf));
+        let nodes = object.node.children().iter().map_while(|object| self.node(object)).collect();
         Some(SceneNode {
             name: name(object),
             place: self.compiled.place(object.span),

@@ -99,8 +99,8 @@ fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> 
 /// as they are valid.
 pub(crate) fn camera_of_kind(world: &World, distance: f32, keyword: &str) -> Result<Camera, String> {
     let (old, frame) = (world.camera(), world.camera_frame());
-    let mut camera = Camera::kinds().into_iter().find(|kind| kind.own_keyword() == keyword);
-    let camera = camera.as_mut().ok_or_else(|| format!("there is no camera `{keyword}`"))?;
+    let camera = Camera::kinds().into_iter().find(|kind| kind.own_keyword() == keyword);
+    let mut camera = camera.ok_or_else(|| format!("there is no camera `{keyword}`"))?;
     for (i, field) in camera.fields().iter().enumerate() {
         let same = old.fields().iter().position(|own| own.name == field.name && own.kind == field.kind);
         let value = same.and_then(|at| old.get(at)).filter(|value| field.constraint.validate(value).is_ok());
@@ -108,12 +108,12 @@ pub(crate) fn camera_of_kind(world: &World, distance: f32, keyword: &str) -> Res
             camera.set(i, value);
         }
     }
-    set(camera, "center", frame.eye);
-    set(camera, "direction", frame.forward);
-    set(camera, "up", frame.up);
+    set(&mut camera, "center", frame.eye);
+    set(&mut camera, "direction", frame.forward);
+    set(&mut camera, "up", frame.up);
     let aside = distance * frame.half_width as f32 * frame.right;
     // These cameras have no field for the centre.
-    match camera {
+    match &mut camera {
         Camera::PushBroom(broom) => (broom.start, broom.end) = (frame.eye - aside, frame.eye + aside),
         Camera::MultipleCenter(many) => {
             let row = |eye: Vec3| {
@@ -131,7 +131,7 @@ pub(crate) fn camera_of_kind(world: &World, distance: f32, keyword: &str) -> Res
         }
         _ => {}
     }
-    Ok(camera.clone())
+    Ok(camera)
 }
 
 /// Sets the value of the camera field whose keyword in the scene language is `word`.

@@ -2,7 +2,6 @@ import { useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { describeChange } from "../mistakes/choices";
 import { type MistakenPicture, useMistaken } from "../mistakes/mistaken";
-import type { MistakeChoice } from "../protocol";
 import { Equation, Mistake, Wrong } from "./parts";
 
 /** Common mistake that a figure can make, which the library renders. */
@@ -11,8 +10,6 @@ export interface FigureMistake {
   change(on: boolean): void;
   /** The picture with the mistake, if it is on. */
   picture: MistakenPicture | null;
-  /** Description and code of the mistake. */
-  choice: MistakeChoice | null;
 }
 
 /**
@@ -27,7 +24,7 @@ export function useFigureMistake(
 ): FigureMistake {
   const [on, change] = useState(false);
   const { picture } = useMistaken(session, on && name !== null ? { name, value: null, size } : null, changes);
-  return { on, change, picture, choice: picture?.mistake ?? null };
+  return { on, change, picture };
 }
 
 /** Switch that makes the mistake of a figure. */
@@ -36,18 +33,18 @@ export function MistakeSwitch({ name, mistake }: { name: string; mistake: Figure
 }
 
 /** Right and wrong code of a figure's mistake, while it is on. */
-export function MistakeCode({ mistake: { on, choice, picture } }: { mistake: FigureMistake }) {
-  if (!on || !choice) return null;
+export function MistakeCode({ mistake: { on, picture } }: { mistake: FigureMistake }) {
+  if (!on || !picture?.mistake) return null;
   return (
     <Equation
       numbers={
         <Wrong>
-          <code>{choice.wrong}</code>
-          {picture && <p>{describeChange(picture.changed)}</p>}
+          <code>{picture.mistake.wrong}</code>
+          <p>{describeChange(picture.changed)}</p>
         </Wrong>
       }
     >
-      <code>{choice.right}</code>
+      <code>{picture.mistake.right}</code>
     </Equation>
   );
 }

@@ -1,7 +1,7 @@
 //! Windows bitmap format, with 24 bits per pixel and the bottom row first.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
-use ::image::{ExtendedColorType, ImageFormat, codecs::bmp::BmpEncoder};
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec};
+use ::image::{ImageFormat, codecs::bmp::BmpEncoder};
 
 const NAME: &str = "BMP";
 
@@ -19,9 +19,6 @@ pub const FORMAT: Format = Format {
 };
 
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    layers.iter().try_for_each(|layer| {
-        let size = (layer.image.width, layer.image.height);
-        // The encoder fails for rows of 2^31 / 3 or more pixels because it cannot pad them.
-        codec::encode(NAME, BmpEncoder::new(&mut *out), &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
-    })
+    // The encoder fails for rows of 2^31 / 3 or more pixels because it cannot pad them.
+    layers.iter().try_for_each(|layer| codec::encode_rgb(NAME, BmpEncoder::new(&mut *out), layer, options))
 }

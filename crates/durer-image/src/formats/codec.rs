@@ -1,7 +1,7 @@
 //! Adapters for the decoders and encoders of the `image` crate.
 
 use super::limits::try_vec;
-use super::{Image, Image8, ImageError, ImageHeader, Raster};
+use super::{Image, Image8, ImageError, ImageHeader, Layer, Raster, WriteOptions, eight_bit};
 use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader};
 use durer_bvh::math::Vec3;
 use std::io::Cursor;
@@ -85,6 +85,17 @@ fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, Ima
     all.try_reserve_exact(count).map_err(|_| ImageError::out_of_memory(count, size_of::<T>()))?;
     all.extend(items.take(count));
     Ok(all)
+}
+
+/// Encodes the colours of a layer with 8 bits per channel.
+pub fn encode_rgb(
+    name: &'static str,
+    encoder: impl ImageEncoder,
+    layer: &Layer,
+    options: &WriteOptions,
+) -> Result<(), ImageError> {
+    let size = (layer.image.width, layer.image.height);
+    encode(name, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
 }
 
 /// Encodes 8-bit pixels as RGB or RGBA.

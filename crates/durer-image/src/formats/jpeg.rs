@@ -1,8 +1,7 @@
 //! JPEG format, with 8 bits per channel, for photographs, textures and web pages. It is lossy.
 
-use super::{Depth, Format, ImageError, ImageHeader, Layer, WriteOptions, codec, eight_bit};
-use ::image::codecs::jpeg::JpegEncoder;
-use ::image::{ExtendedColorType, ImageFormat};
+use super::{Depth, Format, ImageError, ImageHeader, Layer, WriteOptions, codec};
+use ::image::{ImageFormat, codecs::jpeg::JpegEncoder};
 
 const NAME: &str = "JPEG";
 /// Quality of written files, from 1 to 100. At this quality, the loss is hardly visible.
@@ -75,9 +74,7 @@ pub const FORMAT: Format = Format {
 
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {
-        let (size, encoder) =
-            ((layer.image.width, layer.image.height), JpegEncoder::new_with_quality(&mut *out, QUALITY));
-        codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
+        codec::encode_rgb(NAME, JpegEncoder::new_with_quality(&mut *out, QUALITY), layer, options)
     })
 }
 

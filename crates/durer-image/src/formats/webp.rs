@@ -1,6 +1,6 @@
 //! WebP format. Lossy and lossless files can be read, and lossless files are written.
 
-use super::{Depth, Format, ImageError, ImageHeader, Layer, RowLayout, WriteOptions, codec, eight_bit};
+use super::{Depth, Format, ImageError, ImageHeader, Layer, RowLayout, WriteOptions, codec};
 use ::image::codecs::webp::WebPEncoder;
 use ::image::{ExtendedColorType, ImageFormat};
 
@@ -27,9 +27,7 @@ pub const FORMAT: Format = Format {
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {
         let (size, encoder) = ((layer.image.width, layer.image.height), WebPEncoder::new_lossless(&mut *out));
-        let Some(coverage) = &layer.coverage else {
-            return codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size);
-        };
+        let Some(coverage) = &layer.coverage else { return codec::encode_rgb(NAME, encoder, layer, options) };
         let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
         RowLayout::of(layer, options).eight_bit(&layer.image.pixels, coverage, |rgba| bytes.extend(rgba));
         codec::encode(NAME, encoder, &bytes, ExtendedColorType::Rgba8, size)

@@ -1,8 +1,8 @@
 //! Checks the meshes of a scene: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
+use super::mesh_files::MeshFile;
 use super::mesh_files::topology::Topology;
-use super::mesh_files::{MeshFile, models};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as CompiledObject};
@@ -87,8 +87,7 @@ const STRAY_SHARE: usize = 2;
 
 /// Reports meshes that have a few vertices far away from all others.
 pub(super) fn stray_points(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let models = models(scene_probe);
-    let all = scene_probe.meshes().iter().chain(&models);
+    let all = scene_probe.meshes().iter().chain(scene_probe.models());
     let say = |mesh: &MeshFile| {
         let (strays, box_of_rest, far) = strays(&mesh.data.positions)?;
         let message = format!(
@@ -318,8 +317,7 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
             to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
         })
     };
-    let all = models(scene_probe);
-    let turned = all.iter().filter(|mesh| {
+    let turned = scene_probe.models().iter().filter(|mesh| {
         mesh.is_inside_out()
             && !mesh.is_room(scene_probe)
             && !mesh.is_hollow(scene_probe)

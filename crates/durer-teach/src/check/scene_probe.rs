@@ -2,7 +2,7 @@
 
 use super::aim::{BeamMiss, beam_miss};
 use super::brightness::{brightest, exposed_colors};
-use super::mesh_files::{MeshFile, files};
+use super::mesh_files::{MeshFile, files, models};
 use super::probes::{CheckInput, Probe, ProbeGrid};
 use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
@@ -24,6 +24,7 @@ pub struct SceneProbe<'a> {
     aims: OnceLock<Vec<Option<BeamMiss>>>,
     light: OnceLock<(Vec<usize>, Vec<Color>)>,
     meshes: OnceLock<Vec<MeshFile<'a>>>,
+    models: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
 }
 
@@ -45,6 +46,7 @@ impl<'a> SceneProbe<'a> {
             aims: OnceLock::new(),
             light: OnceLock::new(),
             meshes: OnceLock::new(),
+            models: OnceLock::new(),
             material_rays: OnceLock::new(),
         }
     }
@@ -105,6 +107,11 @@ impl<'a> SceneProbe<'a> {
     /// Returns the mesh files of the scene.
     pub(super) fn meshes(&self) -> &[MeshFile<'a>] {
         self.meshes.get_or_init(|| files(self))
+    }
+
+    /// Returns the meshes of a scene that was read from a model file.
+    pub(super) fn models(&self) -> &[MeshFile<'a>] {
+        self.models.get_or_init(|| models(self))
     }
 
     /// Returns, for each material, the number of rays that hit it, either directly or as part of a

@@ -4,7 +4,7 @@
 use super::bugs::PixelOrder;
 use super::fit::{Fit, difference, differing, fit, sampled};
 use super::input::{Diagnosis, DiagnosisInput, Explanation, MAX_DIFFERENCE, prepare, values};
-use super::pictures::View;
+use super::pictures::{View, brightest};
 use super::speckles;
 use super::table::{Formulas, MISTAKES, Mistake, Values};
 use super::variant::SceneVariant;
@@ -116,7 +116,7 @@ fn all_tried(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnos
         true => search.view.light(&search.base, &all),
         false => Vec::new(),
     };
-    search.view.max_value = light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6);
+    search.view.max_value = brightest(&light);
     let mut full = pixels(&search, FULL_PIXELS);
     let steady = search.steady(&full);
     full.keep(&steady);

@@ -120,6 +120,11 @@ impl View<'_> {
     }
 }
 
+/// Returns the maximum value of a picture by which a program scales its values. It is never 0.
+pub(super) fn brightest(light: &[Color]) -> f32 {
+    light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6)
+}
+
 /// Renders a scene with Whitted's method as a program with a mistake would write it, row by row
 /// from the top, encoded as sRGB. `mistake` is a row of the table and its value; `None` gives the
 /// correct picture. The crop of the job is ignored.
@@ -132,8 +137,7 @@ pub fn mistaken_picture(scene: &Scene, world: &World, job: &Job, mistake: Option
         (mistake.apply)(&mut wrong, value);
     }
     if wrong.output == OutputBug::Scaled {
-        let light = view.light(&right, &pixels);
-        view.max_value = light.iter().map(|light| light.max_element()).fold(f32::MIN_POSITIVE, f32::max);
+        view.max_value = brightest(&view.light(&right, &pixels));
     }
     let eight = |value: &Vec3| value.to_array().map(|v| (255.0 * v + 0.5) as u8);
     view.picture(&wrong, &pixels).iter().map(eight).collect()

@@ -314,7 +314,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
         .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48".into())
 }
 
-/// Parses three numbers, for example `0,1.5,-4`.
+/// Parses three numbers, for example `0,0.8,0`.
 ///
 /// # Errors
 ///
@@ -323,7 +323,7 @@ pub fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     let numbers: Option<[f32; 3]> = numbers.and_then(|numbers| numbers.try_into().ok());
     let vector = numbers.map(Vec3::from).filter(|vector| vector.is_finite());
-    vector.ok_or_else(|| "expected three numbers, for example 0,1.5,-4".into())
+    vector.ok_or_else(|| "expected three numbers, for example 0,0.8,0".into())
 }
 
 /// Parses the numbers of grid cells along the axes, for example `10x10x10`.
