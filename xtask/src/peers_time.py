@@ -1,10 +1,12 @@
-"""Compares the time to equal noise of Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes.
+"""Compares the time to equal noise of Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes, with the
+best of Mitsuba's settings for each scene.
 
     python peers_time.py DURER MESHES [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only
     TEXT]
 
 Both render each scene in turn, with the same camera, filter, depth and number of samples, and
-different seeds. The mean squared error of a program is half the mean squared difference over pairs
+different seeds; `orthogonal` needs the square of a prime, and Dürer then takes as many samples. Mitsuba renders it with each of SETTINGS; the table shows the one with the shortest
+time to equal error. The mean squared error of a program is half the mean squared difference over pairs
 of its n pictures. This needs no reference picture, which could favour one program. The error falls
 as one over the time, so the time to equal error is time times error. Time is the CPU time of all
 threads: for Dürer minus that of a picture with one sample, which covers reading and building; for
@@ -132,6 +134,20 @@ def error(pictures):
     return np.mean([((a - b) ** 2).mean() / 2 for a, b in itertools.combinations(pictures, 2)])
 
 
+# Samplers of Mitsuba, and the depths from which it ends paths by Russian roulette: its default, and
+# never. `stratified` is left out because `multijitter` stratifies more dimensions.
+SETTINGS = list(itertools.product(("multijitter", "orthogonal", "ldsampler"), (5, 1000)))
+
+
+def samples_of(sampler, samples):
+    """Returns the number of samples that a sampler takes if `samples` are asked for: `orthogonal`
+    takes the square of the next prime."""
+    if sampler != "orthogonal":
+        return samples
+    side = next(n for n in itertools.count(2) if n * n >= samples and all(n % k for k in range(2, n)))
+    return side * side
+
+
 def spent(work):
     """Returns the result of `work` and its CPU time, including child processes."""
     def now():
@@ -154,25 +170,39 @@ def race(given, scene, folder):
         return pfm(picture)
 
     scene.theirs["sensor"]["film"].update(width=side, height=side)
-    loaded = mi.load_dict(scene.theirs)
-    theirs = lambda samples, seed: np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
-    theirs(given.samples, 1000)
+
+    def theirs(sampler, roulette):
+        scene.theirs["sensor"]["sampler"] = {"type": sampler, "sample_count": samples_of(sampler, given.samples)}
+        scene.theirs["integrator"]["rr_depth"] = roulette
+        loaded = mi.load_dict(scene.theirs)
+        work = lambda samples, seed: np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
+        work(given.samples, 1000)
+        return work
+
     start = min(spent(lambda: ours(1, 0))[1] for _ in range(2))
-    adaptive = lambda samples, seed: ours(samples, seed, "--adaptive")
-    made = {ours: [], theirs: [], adaptive: []}
+    counts = {samples_of(sampler, given.samples) for sampler, _ in SETTINGS}
+    programs = {(name, count): (program, count) for count in counts for name, program in [
+        (scene.name, ours), ("with `--adaptive`", lambda samples, seed: ours(samples, seed, "--adaptive"))]}
+    programs |= {one: (theirs(*one), samples_of(one[0], given.samples)) for one in SETTINGS}
+    made = {name: [] for name in programs}
     for seed in range(given.runs):
-        for program in made:
-            made[program].append(spent(lambda: program(given.samples, seed)))
-    pictures, times = [[run[0] for run in made[p]] for p in made], [min(run[1] for run in made[p]) for p in made]
-    times[0] -= start
-    times[2] -= start
-    errors = [error(p) for p in pictures]
-    means = [np.mean(p) for p in pictures]
-    root = [np.sqrt(e) / means[1] for e in errors]
-    for own, name in [(0, scene.name), (2, "with `--adaptive`")]:
-        ratio = times[own] * errors[own] / (times[1] * errors[1])
-        print(f"| {name} | {times[own]:.2f} s | {times[1]:.2f} s | {100 * root[own]:.2f} % | {100 * root[1]:.2f} % | {means[own] / means[1]:.4f} "
-              f"| **{ratio:.2f}** |", flush=True)
+        for name, (program, count) in programs.items():
+            made[name].append(spent(lambda: program(count, seed)))
+    # Time, mean squared error and mean of each program.
+    figures = {}
+    for name, runs in made.items():
+        pictures = [picture for picture, _ in runs]
+        figures[name] = np.array([min(time for _, time in runs), error(pictures), np.mean(pictures)])
+    for name in (scene.name, "with `--adaptive`"):
+        # The setting with which Mitsuba compares best.
+        def ratio(one):
+            t, e, _ = figures[name, samples_of(one[0], given.samples)] - (start, 0, 0)
+            return t * e / (figures[one][0] * figures[one][1])
+        best = max(SETTINGS, key=ratio)
+        count = samples_of(best[0], given.samples)
+        (t, e, m), (time, noise, mean) = figures[name, count] - (start, 0, 0), figures[best]
+        print(f"| {name} | {t:.2f} s | {time:.2f} s | {best[0]}, {best[1]}, {count} | {100 * np.sqrt(e) / mean:.2f} % | "
+              f"{100 * np.sqrt(noise) / mean:.2f} % | {m / mean:.4f} | **{ratio(best):.2f}** |", flush=True)
 
 
 def begun(**numbers):
@@ -202,8 +232,8 @@ def each(given, scenes, race):
 def main():
     given = begun(side=256, samples=64, runs=5, threads=2)
     print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, Mitsuba {mi.__version__}\n\n"
-          "| scene | ours | Mitsuba | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
-          "| --- | --- | --- | --- | --- | --- | --- |")
+          "| scene | ours | Mitsuba | its sampler, roulette from, samples | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
+          "| --- | --- | --- | --- | --- | --- | --- | --- |")
     each(given, scenes, race)
 
 

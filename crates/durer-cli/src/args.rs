@@ -9,6 +9,7 @@ use crate::farm::FarmArgs;
 use crate::info::InfoArgs;
 use crate::lesson::LessonArgs;
 use crate::live::LiveArgs;
+use crate::manual::ManArgs;
 use crate::measure::MeasureArgs;
 use crate::merge::MergeArgs;
 use crate::photo::PhotoArgs;
@@ -64,7 +65,5 @@ pub enum Command {
         /// Shell to print completions for
         shell: clap_complete::Shell,
     },
-    /// Print the manual page to standard output
-    #[command(after_help = "Example:\n  durer man > durer.1 && man ./durer.1")]
-    Man,
+    Man(ManArgs),
 }

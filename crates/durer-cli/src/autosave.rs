@@ -1,5 +1,6 @@
 //! Checkpoints, part files and previews for long renders.
 
+use crate::display::DisplayArgs;
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::{FileRegistry, start_of};
 use crate::options::RenderArgs;
@@ -7,7 +8,7 @@ use crate::output::{encode, format, print_written, with_suffix};
 use crate::terminal::print_error_line;
 use crate::{progress, report};
 use durer::format::folder::FolderSource;
-use durer::image::{Destination, Display, Format, save_all};
+use durer::image::{Destination, Format, save_all};
 use durer::options::memory::Memory;
 use durer::render::{Panicked, PartError, PartialRender, RenderEvent};
 use std::cell::Cell;
@@ -34,7 +35,7 @@ pub struct Autosave {
     restart: bool,
     quiet: bool,
     preview: Option<(Destination, &'static Format)>,
-    display: Display,
+    display: DisplayArgs,
     start: Instant,
     first_save_after: Duration,
     /// True if this run has already saved work to the file.
@@ -90,7 +91,7 @@ impl Autosave {
             restart: work.restart,
             quiet: args.quiet,
             preview: preview.transpose()?.or(growing),
-            display: args.display.display()?,
+            display: args.display.clone(),
             start: Instant::now(),
             first_save_after: SHORT.min(work.checkpoint_every),
             saved_by_this_run: Cell::new(false),
@@ -130,7 +131,8 @@ impl Autosave {
         if let (RenderEvent::PassDone, Some((destination, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
-            let bytes = encode(format, &[layer], self.display, &[]);
+            let display = self.display.display(Some(&layer.image.pixels));
+            let bytes = encode(format, &[layer], display, &[]);
             if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(destination, bytes)])) {
                 self.warn_once(&error.to_string());
             }

@@ -1,6 +1,9 @@
-//! Implements `durer info`, which prints a summary of a scene.
+//! Implements `durer info`, which prints a summary of a scene or of a measured luminaire.
 
-use crate::failure::Failure;
+mod luminaire;
+mod polar;
+
+use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
 use crate::options::SceneArgs;
@@ -15,21 +18,36 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Print a summary of a scene
+/// Print a summary of a scene or of a measured luminaire
 #[derive(Args)]
-#[command(after_help = "Examples:\n  durer info scene.txt\n  durer info scene.txt --json")]
+#[command(after_help = "Examples:
+  durer info scene.txt
+  durer info scene.txt --json
+  durer info lamp.ies --polar lamp.svg
+
+For a luminaire (.ies or .ldt), durer prints its flux, efficacy, peak, beam angles (half of the maximum intensity of a
+vertical plane) and field angles (a tenth of it).")]
 pub struct InfoArgs {
-    /// Scene or model file
+    /// Scene or model file, or photometric file (.ies, .ldt)
     pub scene: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
     /// Print JSON, with the scene as `durer convert` writes it
     #[arg(long)]
     pub json: bool,
+    /// Draw the intensities of a luminaire in two planes as an SVG file
+    #[arg(long, value_name = "FILE")]
+    pub polar: Option<PathBuf>,
 }
 
 /// Runs `durer info`.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    if luminaire::is_photometric(&args.scene) {
+        return luminaire::run(args);
+    }
+    if args.polar.is_some() {
+        return Err(invalid_input("--polar needs a photometric file (.ies or .ldt)"));
+    }
     let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut FileRegistry::default())?;
     let (loaded, world) = (&compiled.loaded, &compiled.world);
     let dialect = loaded.dialect;

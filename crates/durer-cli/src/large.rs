@@ -1,5 +1,6 @@
 //! Renders pictures that are larger than memory and writes them at the same time.
 
+use crate::display::Exposure;
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::options::RenderArgs;
 use crate::output::{Target, print_written};
@@ -86,7 +87,12 @@ pub fn render(
     args: &RenderArgs,
 ) -> Result<(), Failure> {
     let Some((destination, format)) = target.single() else { return Ok(()) };
-    let options = WriteOptions { display: args.display.display()?, attributes: &[] };
+    if args.display.exposure.exposure == Exposure::Auto {
+        return Err(invalid_input(
+            "--exposure auto needs the whole picture in memory: increase --memory, or give the stops",
+        ));
+    }
+    let options = WriteOptions { display: args.display.display(None), attributes: &[] };
     let large = BandedPicture { bands, world, control, format, options, result: RefCell::new(None) };
     let saved =
         progress::watch(control, args.quiet, || Ok(save_all(&[(destination, &large)]))).map_err(from_render_error)?;

@@ -14,6 +14,7 @@ mod failure;
 mod farm;
 mod file_registry;
 mod frames;
+mod help;
 mod info;
 mod job;
 mod large;
@@ -34,6 +35,7 @@ mod render;
 mod report;
 mod scene_defaults;
 mod stats;
+mod svg;
 mod terminal;
 mod values;
 mod verify;
@@ -41,7 +43,7 @@ mod watching;
 mod words;
 
 use args::{Cli, Command};
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 use failure::{Failure, invalid_input};
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -61,6 +63,9 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     }
     if let Err(message) = durer::options::memory::check_address_space() {
         return Failure::Other(anyhow::anyhow!(message)).report();
+    }
+    if let Some(word) = words.iter().find(|word| word.as_encoded_bytes().iter().any(|b| matches!(b, b'\n' | b'\r'))) {
+        return invalid_input(format!("{word:?} contains a line break; names and values must be on one line")).report();
     }
     durer::threads::prepare();
     // If `durer` is started under the name of an official program, it emulates that program.
@@ -91,7 +96,7 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
             Command::Dialects => manual::dialects(),
             Command::Words(args) => words::run(&args),
             Command::Completions { shell } => manual::completions(shell),
-            Command::Man => manual::man(),
+            Command::Man(args) => manual::man(&args),
         },
     };
     match result {
@@ -102,8 +107,10 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
 
 /// Parses a command line. Help is printed like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
-    Cli::try_parse_from(&words).unwrap_or_else(|error| {
-        let error = option_hints::with_hint(error, &words, &Cli::command());
+    let program = help::arrange(Cli::command(), words.iter().any(|word| word == "--help-all"));
+    let matches = program.clone().try_get_matches_from(&words);
+    matches.and_then(|matches| Cli::from_arg_matches(&matches)).unwrap_or_else(|error| {
+        let error = option_hints::with_hint(error, &words, &program);
         let (rendered, code) = (error.render(), u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
         let text = |is_terminal: bool| match is_terminal && terminal::has_styles() {
             true => rendered.ansi().to_string(),

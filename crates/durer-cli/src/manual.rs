@@ -1,10 +1,13 @@
-//! Prints the dialects, shell completions and the manual page.
+//! Prints the dialects, shell completions and the manual pages.
 
 use crate::args::Cli;
-use crate::failure::Failure;
+use crate::failure::{Failure, invalid_input};
+use crate::help::arrange;
 use crate::terminal::print_line;
-use clap::CommandFactory;
+use clap::{Args, Command, CommandFactory};
 use durer::dialect::{Dialect, Quirk};
+use durer::image::save;
+use std::path::PathBuf;
 
 /// Implements `durer dialects`, which prints the dialects and the quirks.
 pub fn dialects() -> Result<(), Failure> {
@@ -28,21 +31,55 @@ pub fn dialects() -> Result<(), Failure> {
 /// Implements `durer completions`, which prints a shell's completion script.
 pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut text = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "durer", &mut text);
+    clap_complete::generate(shell, &mut arrange(Cli::command(), true), "durer", &mut text);
     print_line(String::from_utf8_lossy(&text).trim_end());
     Ok(())
 }
 
-/// Implements `durer man`, which prints the manual page of the command followed by those of its
-/// subcommands.
-pub fn man() -> Result<(), Failure> {
-    let mut text = Vec::new();
-    let command = Cli::command();
-    clap_mangen::Man::new(command.clone()).render(&mut text)?;
-    for part in command.get_subcommands() {
-        let name = format!("durer-{}", part.get_name());
-        clap_mangen::Man::new(part.clone().name(name)).render(&mut text)?;
+/// Print the manual page of the program or of a command
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer man render | man -l -
+  durer man --folder ~/.local/share/man/man1")]
+pub struct ManArgs {
+    /// Command whose page is printed
+    pub command: Option<String>,
+    /// Write the pages of the program and of all commands into this folder: durer.1, durer-render.1 and so on
+    #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
+    pub folder: Option<PathBuf>,
+}
+
+/// Implements `durer man`.
+pub fn man(args: &ManArgs) -> Result<(), Failure> {
+    let program = arrange(Cli::command(), true);
+    let named = |part: &Command| part.clone().name(format!("durer-{}", part.get_name()));
+    match (&args.folder, &args.command) {
+        (Some(folder), _) => {
+            let pages = std::iter::once(program.clone()).chain(program.get_subcommands().map(named));
+            let file = |page: Command| Ok((folder.join(format!("{}.1", page.get_name())), troff(page)?));
+            let files = pages.map(file).collect::<Result<Vec<_>, Failure>>()?;
+            std::fs::create_dir_all(folder)
+                .map_err(|error| invalid_input(format!("cannot create {}: {error}", folder.display())))?;
+            for (path, text) in &files {
+                save(path, text).map_err(|error| Failure::Other(error.into()))?;
+            }
+            print_line(&format!("wrote {} pages to {}", files.len(), folder.display()));
+        }
+        (None, Some(name)) => {
+            let part = program.find_subcommand(name).ok_or_else(|| {
+                let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
+                invalid_input(format!("there is no command `{name}`; the commands are {}", names.join(", ")))
+            })?;
+            print_line(String::from_utf8_lossy(&troff(named(part))?).trim_end());
+        }
+        (None, None) => print_line(String::from_utf8_lossy(&troff(program)?).trim_end()),
     }
-    print_line(String::from_utf8_lossy(&text).trim_end());
     Ok(())
+}
+
+/// Returns a manual page in the language of `man`.
+fn troff(page: Command) -> Result<Vec<u8>, Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page).render(&mut text)?;
+    Ok(text)
 }

@@ -48,10 +48,11 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let Some((_, first)) = parts.first() else { return Err(invalid_input("no parts to merge")) };
     let names: Vec<&str> = first.job().picture_names().collect();
     let target = Target::new(&args.output, &names, &mut registry)?;
+    args.display.check_bits(target.format())?;
     let whole = merge(&parts).map_err(|error| invalid_input(error.to_string()))?;
     drop(parts);
     rejected(&whole.statistics(), None, args.quiet);
-    let display = args.display.display()?;
+    let display = args.display.display_of(&whole, args.quiet)?;
     if target.save_colors(&whole, display, args.quiet)?.is_none() {
         output::save(&target.files(&whole.pictures().map_err(from_render_error)?, display)?, args.quiet)?;
     }

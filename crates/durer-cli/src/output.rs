@@ -60,6 +60,11 @@ impl Target {
         Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
+    /// Returns the format of the files.
+    pub fn format(&self) -> &'static Format {
+        self.format
+    }
+
     /// Returns the file and its format if all pictures share one file.
     pub fn single(&self) -> Option<(&Destination, &'static Format)> {
         match &self.files[..] {

@@ -88,6 +88,7 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         (_, Some(_)) => (None, Some(Autosave::new(args, &output, &mut registry)?)),
         _ => {
             let target = Target::new(&output, &shows(args)?, &mut registry)?;
+            args.display.check_bits(target.format())?;
             (Some(target), Some(Autosave::new(args, &output, &mut registry)?))
         }
     };
@@ -176,7 +177,7 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     match target {
         None => autosave.save(&part)?,
         Some(target) => {
-            let display = args.display.display()?;
+            let display = args.display.display_of(&part, args.quiet)?;
             let plain = args.view.show == ["color"] && args.denoise.is_none();
             let saved = || if plain { target.save_colors(&part, display, args.quiet) } else { Ok(None) };
             let (looks, pictures) = match durer::threads::install(threads, saved)? {
@@ -252,7 +253,7 @@ fn save_after_interrupt(
 ) -> Failure {
     let mut written = autosave.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
-        let display = args.display.display().unwrap_or_default();
+        let display = args.display.display_of(part, args.quiet).unwrap_or_default();
         let files = part.pictures().map_err(from_render_error).and_then(|rendered| target.files(&rendered, display));
         if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
             written.extend(files.into_iter().map(|(place, _)| place.path().display().to_string()));

@@ -1,7 +1,7 @@
 //! Prints diagnostics on the terminal.
 
 use crate::failure::Failure;
-use crate::terminal::{controls_terminal, print_error_line, printable};
+use crate::terminal::{controls_terminal, print_error_line, printable, printable_line};
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
 use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
@@ -56,7 +56,7 @@ pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnosti
 
 /// Prints a note on a single line.
 pub fn note(diagnostic: &Diagnostic) {
-    print_error_line(&format!("note: {}", diagnostic.message));
+    print_error_line(&format!("note: {}", printable_line(&diagnostic.message)));
 }
 
 /// Prints the number of rejected samples, the first of them and, if the world is given, the cause.
@@ -183,13 +183,14 @@ fn show(diagnostic: &Diagnostic, files: &Files) -> Shown<usize> {
     let range = |span: Span| span.start as usize..span.end as usize;
     let mut labels = Vec::new();
     if let Some(span) = diagnostic.span {
-        labels.push(Label::primary(span.file as usize, range(span)).with_message(printable(&diagnostic.label)));
+        labels.push(Label::primary(span.file as usize, range(span)).with_message(printable_line(&diagnostic.label)));
     }
     if let Some((span, what)) = diagnostic.related.as_ref().filter(|(span, _)| fits(diagnostic.span, *span, files)) {
-        labels.push(Label::secondary(span.file as usize, range(*span)).with_message(printable(what)));
+        labels.push(Label::secondary(span.file as usize, range(*span)).with_message(printable_line(what)));
     }
     let effect = diagnostic.effect.iter().map(|effect| format!("effect: {}", printable(effect)));
     let notes = effect.chain(diagnostic.help.iter().map(|help| format!("help: {}", printable(help)))).collect();
-    let shown = Shown::new(level).with_message(printable(&diagnostic.message)).with_labels(labels).with_notes(notes);
+    let shown =
+        Shown::new(level).with_message(printable_line(&diagnostic.message)).with_labels(labels).with_notes(notes);
     if diagnostic.code.is_empty() { shown } else { shown.with_code(diagnostic.code) }
 }

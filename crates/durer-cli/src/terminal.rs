@@ -76,6 +76,11 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
+/// Like [`printable`], but also replaces line breaks, so that the result is a single line.
+pub fn printable_line(text: &str) -> String {
+    printable(text).replace('\n', "\\n")
+}
+
 /// Returns true if the rest of an escape sequence only changes the style of the text.
 fn begins_style(rest: &str) -> bool {
     let numbers = rest.strip_prefix('[').and_then(|rest| rest.split_once('m')).map(|(numbers, _)| numbers);
@@ -106,11 +111,12 @@ pub fn print_error_line(line: &str) {
 
 #[cfg(test)]
 mod tests {
-    use super::printable;
+    use super::{printable, printable_line};
 
     #[test]
     fn names_cannot_control_the_terminal() {
         assert_eq!(printable("a\tb\nDürer \u{1b}[1;2m漢\u{1b}[0m"), "a\tb\nDürer \u{1b}[1;2m漢\u{1b}[0m");
         assert_eq!(printable("x\u{1b}[2J\u{7f}\u{9b}\u{202e}.png"), "x\\u{1b}[2J\\u{7f}\\u{9b}\\u{202e}.png");
+        assert_eq!(printable_line("a\nb\r.png"), "a\\nb\\u{d}.png");
     }
 }

@@ -45,6 +45,60 @@ fn photometric_light_has_its_specified_illuminance() {
     assert!(folder.expect_exit(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
 
+/// One point light of 1000 cd two units above the middle of a square: E = I cos^4 / h^2 below a
+/// lamp whose intensity falls with the cosine.
+#[test]
+fn grids_have_figures_lists_plans_and_error_targets() {
+    let folder = lit();
+    folder.write("open.txt", LIT.replace("emissionLuminance 20", ""));
+    let grid = "measure open.txt --bounces 0 --samples 16 --grid -2,0,-2:4,0,0:0,0,4:9x9";
+    let output = folder.expect_exit(0, &format!("{grid} --plan desk.svg"));
+    let values: Vec<f64> =
+        output.out.lines().skip(1).map(|row| row.split(',').nth(6).unwrap().parse().unwrap()).collect();
+    assert_eq!(values.len(), 81);
+    // The cell in the middle lies straight below the lamp.
+    assert!((values[40] - 250.0).abs() < 0.1, "{}", values[40]);
+    let (min, sum) = (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().sum::<f64>());
+    let figures = format!("U0 {:.3}, U1 {:.3}", min / (sum / 81.0), min / 250.0);
+    assert!(
+        output.err.contains("note: grid 1: average ") && output.err.contains(&figures),
+        "{figures}: {}",
+        output.err
+    );
+    assert!(output.err.contains("wrote desk.svg"));
+    let plan = std::fs::read_to_string(folder.path("desk.svg")).unwrap();
+    assert!(plan.starts_with("<svg") && plan.matches("<rect").count() > 81 && plan.contains("stroke=\"#fff\""));
+    let json = folder.expect_exit(0, &format!("{grid} --json --at 0,0,0"));
+    let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!(json["points"].as_array().unwrap().len(), 82);
+    assert!((json["grids"][0]["u0"].as_f64().unwrap() - min / (sum / 81.0)).abs() < 1e-4);
+
+    folder.write("places.csv", "x,y,z\n0,0,0\n-0.5,0,0.5,0,2,0\n");
+    let rows = folder.expect_exit(0, "measure open.txt --bounces 0 --samples 16 --points places.csv").out;
+    assert!(
+        rows.lines().nth(1).unwrap().starts_with("0,0,0,0,1,0,249.9") || rows.contains("0,0,0,0,1,0,250.0"),
+        "{rows}"
+    );
+    folder.write("broken.csv", "0,0,0\n1,2\n");
+    folder.expect_failure(2, "measure open.txt --points broken.csv", &["broken.csv:2:1", "x,y,z"]);
+    folder.expect_failure(2, "measure open.txt --points none.csv", &["none.csv"]);
+    folder.expect_failure(2, "measure open.txt --at 0,0,0 --plan desk.svg", &["--grid"]);
+    folder.expect_failure(2, &format!("{grid} --plan desk.png"), &["must end in .svg"]);
+
+    // The emissive ball is an area light, so its illuminance has noise.
+    for target in ["5%", "0.01"] {
+        let measure = format!("measure lit.txt --at 0,0,1.5 --at 2,0,1 --error {target} --json");
+        let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, &measure).out).unwrap();
+        for point in json["points"].as_array().unwrap() {
+            let number = |name: &str| point[name].as_f64().unwrap();
+            let share = if target == "5%" { 0.05 } else { 0.01 };
+            assert!(number("illuminance_error") <= share * number("illuminance"), "{point}");
+            assert!(number("samples") >= 256.0 && number("samples") < 1048576.0, "{point}");
+        }
+    }
+    folder.expect_failure(2, "measure lit.txt --at 0,0,0 --error 0", &["a share such as 1% or 0.01"]);
+}
+
 #[test]
 fn photons_measure_light_through_glass() {
     let folder = TestFolder::new();

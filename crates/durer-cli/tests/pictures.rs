@@ -94,6 +94,41 @@ fn every_format_is_written_and_read_back() {
 }
 
 #[test]
+fn pictures_of_sixteen_bits_have_finer_steps() {
+    let folder = TestFolder::new();
+    let render = "render scene.txt --size 13x7 --transfer linear";
+    folder.expect_exit(0, &format!("{render} -o exact.pfm"));
+    let exact = folder.image("exact.pfm");
+    for name in ["fine.png", "fine.ppm"] {
+        folder.expect_exit(0, &format!("{render} --bits 16 -o {name}"));
+        let error =
+            |(a, b): (&durer::math::Vec3, &durer::math::Vec3)| (*a - b.min(durer::math::Vec3::ONE)).abs().max_element();
+        let worst = folder.image(name).pixels.iter().zip(&exact.pixels).map(error).fold(0.0, f32::max);
+        assert!(worst < 1e-5, "{name}: {worst}");
+    }
+    folder.expect_failure(2, &format!("{render} --bits 16 -o x.jpg"), &["--bits 16 needs a .png or .ppm file", "JPEG"]);
+    folder.expect_failure(2, &format!("{render} --bits 16 -o x.exr"), &["OpenEXR stores floating-point numbers"]);
+    folder.expect_failure(2, &format!("{render} --bits 12 -o x.png"), &["expected 8 or 16"]);
+}
+
+#[test]
+fn exposure_is_chosen_for_bright_and_dark_scenes() {
+    let folder = TestFolder::new();
+    for (light, stops) in [(1.0, 0.0), (5000.0, -12.0), (0.001, 9.0)] {
+        let lit = SCENE.replace("color 0.2 0.1 0.5", &format!("color {light} {light} {light}"));
+        folder.write("lit.txt", lit.replace("color 0.9 0.9 0.8", &format!("color {light} {light} {light}")));
+        let output = folder.expect_exit(0, "render lit.txt --size 24x24 --exposure auto -o lit.png");
+        let chosen = output.err.split("--exposure auto chose ").nth(1).and_then(|rest| rest.split(' ').next());
+        let chosen: f32 = chosen.unwrap_or_else(|| panic!("{}", output.err)).parse().unwrap();
+        assert!((chosen - stops).abs() < 4.0, "{light}: {chosen}");
+        let pixels = folder.image8("lit.png").pixels;
+        let bright = pixels.iter().filter(|pixel| pixel[1] > 60).count();
+        assert!(bright > pixels.len() / 4, "{light}: {bright}");
+    }
+    folder.expect_failure(2, "render scene.txt -o p.png --exposure bright", &["a number from -60 to 60, or auto"]);
+}
+
+#[test]
 fn several_pictures_are_separate_files_or_layers() {
     let folder = TestFolder::new();
     let before = folder.names();

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{SCENE, TestFolder};
+use common::{ProgramOutput, SCENE, TestFolder};
 use std::process::{Command, Stdio};
 
 #[test]
@@ -73,6 +73,21 @@ fn files_other_than_scenes_are_refused_at_once() {
     folder.expect_failure(2, "render missing.txt -o p.png", &["missing.txt"]);
     folder.expect_failure(2, "render . -o p.png", &["not a regular file"]);
     folder.expect_failure(2, "render scene.txt/below -o p.png", &["scene.txt/below"]);
+}
+
+/// A file's name must not look like a second message.
+#[test]
+fn line_breaks_in_names_do_not_break_messages() {
+    let folder = TestFolder::new();
+    let broken = "a.txt\nerror: forged";
+    let output = ProgramOutput::of(folder.command("render -o p.png").arg(broken).output().unwrap());
+    assert_eq!(output.code, Some(2));
+    assert_eq!(output.err, format!("error: {broken:?} contains a line break; names and values must be on one line\n"));
+    let gltf = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"b.bin%0Aerror: forged","byteLength":4}],
+        "scenes":[{"nodes":[]}]}"#;
+    folder.write("uri.gltf", gltf);
+    let output = folder.run("info uri.gltf");
+    assert!(output.err.lines().all(|line| !line.starts_with("error: forged")), "{}", output.err);
 }
 
 #[cfg(unix)]

@@ -19,7 +19,12 @@ fn help_has_examples() {
 fn manual_completions_and_dialects() {
     let folder = TestFolder::new();
     let man = folder.expect_exit(0, "man").out;
-    assert!(man.contains(".TH durer") && man.contains("durer-render") && man.contains("depth"));
+    assert!(man.contains(".TH durer") && man.contains("durer\\-render(1)"), "{man}");
+    let render = folder.expect_exit(0, "man render").out;
+    assert!(render.contains(".TH durer-render") && render.contains("photon\\-radius"), "{render}");
+    folder.expect_failure(2, "man rendre", &["there is no command `rendre`", "render"]);
+    folder.expect_exit(0, "man --folder pages");
+    assert_eq!(std::fs::read_to_string(folder.path("pages/durer-render.1")).unwrap().trim_end(), render.trim_end());
     for shell in ["bash", "zsh", "fish"] {
         assert!(folder.expect_exit(0, &format!("completions {shell}")).out.contains("transfer"), "{shell}");
     }
@@ -123,4 +128,42 @@ fn terms_lead_to_words() {
     }
     folder.expect_failure(2, "words Spehre", &["did you mean `Sphere`?"]);
     folder.expect_failure(2, "words xyzzyx", &["lists them all"]);
+}
+
+#[test]
+fn info_of_a_luminaire() {
+    let folder = TestFolder::new();
+    // Lambert's law with a peak of 1000 cd: the flux is 1000 pi lm, or 3141.6 lm.
+    let angles: Vec<String> = (0..=90).map(|angle| angle.to_string()).collect();
+    let candela: Vec<String> =
+        (0..=90).map(|angle| (1000.0 * durer::math::fp::sin_cos_degrees(f64::from(angle)).1).to_string()).collect();
+    let lamp = format!(
+        "IESNA:LM-63-2002\n[MANUFAC] Test \u{1b}[2J\n[LUMINAIRE] Panel <1>\nTILT=NONE\n1 4000 1 91 1 1 2 0 0 0\n1 1 40\n{}\n0\n{}\n",
+        angles.join(" "),
+        candela.join(" ")
+    );
+    folder.write("lamp.ies", &lamp);
+    let text = folder.expect_exit(0, "info lamp.ies --polar lamp.svg").out;
+    for line in [
+        "luminaire  Panel <1>\n",
+        "format     IES LM-63, type C, 91 vertical and 1 horizontal angles\n",
+        "flux       3141.3 lm, 100.0 % of it downwards\n",
+        "sources    4000.0 lm; light output ratio 78.5 %\n",
+        "power      40.0 W; luminous efficacy 78.5 lm/W\n",
+        "peak       1000.0 cd at vertical angle 0, horizontal angle 0\n",
+        "beam       120.0 degrees in plane 0-180, 120.0 degrees in plane 90-270 (half of the maximum)\n",
+        "wrote lamp.svg\n",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    assert!(!text.contains('\u{1b}'));
+    let svg = std::fs::read_to_string(folder.path("lamp.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("Panel &lt;1&gt;") && svg.ends_with("</svg>\n"));
+    let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info lamp.ies --json").out).unwrap();
+    assert!((json["efficacy_lm_per_w"].as_f64().unwrap() - 78.54).abs() < 0.02);
+    folder.expect_failure(2, "info scene.txt --polar lamp.svg", &["--polar needs a photometric file"]);
+    folder.expect_failure(2, "info none.ies", &["none.ies"]);
+    folder.write("broken.ies", lamp.replace("TILT=NONE", ""));
+    folder.expect_failure(2, "info broken.ies", &["broken.ies:1:1", "TILT="]);
+    folder.expect_failure(2, "info lamp.ies --polar lamp.ies", &["lamp.ies"]);
 }

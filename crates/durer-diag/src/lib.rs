@@ -2,7 +2,10 @@
 //!
 //! The library creates diagnostics; the command-line program and the Python module print them.
 
+mod stand_in;
+
 use serde::{Deserialize, Serialize};
+pub use stand_in::{StandIn, stand_in};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Signatures of file formats, which are first bytes that identify a file regardless of its name.
 
-use durer_diag::{Diagnostic, Span};
+use durer_diag::{Diagnostic, Span, stand_in};
 
 /// List of signatures, each with its bytes, the kind of file, and the extension that the file's
 /// name should have. The extension is `None` if Dürer does not read such files as scenes.
@@ -32,8 +32,6 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"ISO-10303-21", "STEP", None),
     (b"#VRML", "VRML", None),
     (b"{\\rtf", "a text of a word processor (RTF)", None),
-    (b"<!DOCTYPE html", "a web page", None),
-    (b"<html", "a web page", None),
     (b"\x7fELF", "a program", None),
     (b"Kaydara FBX Binary", "FBX", None),
     (b"PXR-USDC", "binary USD", Some("usdc")),
@@ -52,6 +50,11 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         // The bytes of the file cannot be shown, so the error has no position.
         let message = format!("`{last}` is text in UTF-16, but the text must be in UTF-8");
         return Some(Diagnostic::error(message).code("syntax").help("save the file as UTF-8 in the text editor"));
+    }
+    if let Some(found) = stand_in(bytes) {
+        let message = format!("`{last}` is {}", found.what);
+        let span = Span { file, start: 0, end: found.length as u32 };
+        return Some(Diagnostic::error(message).code("bad-file").at(span).help(found.help));
     }
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
     // Packages of USD are ZIP archives too.
@@ -111,6 +114,7 @@ mod tests {
         assert_eq!(messages(b"PK\x03\x04", "b.usdz", &["usda", "usdc", "usdz", "usd"]), None);
         assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
         assert!(messages(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("use the file in a scene"));
+        assert!(messages(b"<!doctype html>", "b.glb", &["glb"]).unwrap().contains("the download probably failed"));
         assert!(messages(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
         assert!(messages(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack the archive"));
         assert_eq!(messages(b"glTF", "b.gltf", &["gltf", "glb"]), None);

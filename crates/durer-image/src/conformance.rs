@@ -91,6 +91,28 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
 }
 
 #[test]
+fn sixteen_bits_are_kept_where_a_format_has_them() {
+    let image = sample();
+    let mut finer = Vec::new();
+    for format in FORMATS.iter().filter(|format| format.supports_sixteen_bits()) {
+        for coverage in [None, Some(vec![1.0; 27])] {
+            let display = Display { bits: ChannelBits::Sixteen, ..Transfer::Linear.into() };
+            let layer = Layer { name: "x".into(), image: image.clone().into(), kind: LayerKind::Color, coverage };
+            let mut out = Vec::new();
+            format.write(&[layer], &WriteOptions { display, attributes: &[] }, &mut out).unwrap();
+            assert!(matches!(format.decode(&out), Ok(Raster::Sixteen(..))), "{}", format.name);
+            let back = read(&out, &name(format)).unwrap();
+            for (a, b) in back.pixels.iter().zip(&image.pixels) {
+                // Half a step of 1 / 65535, and the rounding of single precision.
+                assert!((*a - *b).abs().max_element() <= 0.5 / 65535.0 + f32::EPSILON, "{}: {a} {b}", format.name);
+            }
+        }
+        finer.push(format.name);
+    }
+    assert_eq!(finer, ["PNG", "PPM"]);
+}
+
+#[test]
 fn layers_that_do_not_fit_are_refused() {
     let options = WriteOptions::default();
     let small = Image::new(1, 1, Vec3::ZERO).unwrap();

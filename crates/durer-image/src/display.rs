@@ -1,11 +1,11 @@
-//! Conversion of linear colours to 8-bit values by exposure, tone mapping, and a transfer function.
+//! Conversion of linear colours to integer values by exposure, tone mapping, and a transfer function.
 
 use super::Transfer;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use glam::Mat3;
 
-/// Conversion of linear colours to 8-bit values for a file or a screen by exposure, tone mapping,
+/// Conversion of linear colours to integer values for a file or a screen by exposure, tone mapping,
 /// and a transfer function. Floating-point formats ignore this conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Display {
@@ -15,6 +15,19 @@ pub struct Display {
     pub tone: Tone,
     /// Transfer function, which is applied last.
     pub transfer: Transfer,
+    /// Number of bits per channel, in formats that support both.
+    pub bits: ChannelBits,
+}
+
+/// Number of bits per channel of a picture file with integer values. Formats that do not support
+/// 16 bits are written with 8; see [`Format::supports_sixteen_bits`](crate::Format).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ChannelBits {
+    /// Values from 0 to 255.
+    #[default]
+    Eight,
+    /// Values from 0 to 65535.
+    Sixteen,
 }
 
 impl Default for Display {
@@ -25,7 +38,7 @@ impl Default for Display {
 
 impl From<Transfer> for Display {
     fn from(transfer: Transfer) -> Self {
-        Display { exposure: 1.0, tone: Tone::None, transfer }
+        Display { exposure: 1.0, tone: Tone::None, transfer, bits: ChannelBits::Eight }
     }
 }
 
@@ -33,6 +46,11 @@ impl Display {
     /// Converts a colour to 8-bit values.
     pub fn encode_pixel(&self, color: Color) -> [u8; 3] {
         self.transfer.encode_pixel(self.tone.apply(self.exposure * color))
+    }
+
+    /// Converts a colour to 16-bit values.
+    pub fn encode_pixel16(&self, color: Color) -> [u16; 3] {
+        self.tone.apply(self.exposure * color).to_array().map(|value| self.transfer.encode16(value))
     }
 }
 

@@ -22,6 +22,16 @@ pub enum ImageError {
         /// Name under which the picture was read.
         name: String,
     },
+    /// The file is something else that was stored in its place, such as a web page.
+    #[error("`{name}` is {what}; {help}")]
+    StandIn {
+        /// Name under which the picture was read.
+        name: String,
+        /// Kind of file.
+        what: &'static str,
+        /// Advice on how to get the picture.
+        help: &'static str,
+    },
     /// The content violates the rules of its format or ends too early.
     #[error("not a valid {format} picture: {reason}")]
     Malformed {

@@ -28,7 +28,7 @@ mod webp;
 pub use rows::{RowFormat, RowLayout, RowWriter};
 
 use super::limits;
-use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
+use super::{ChannelBits, Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::panics::catch_panic;
 use durer_diag as diag;
 #[cfg(any(feature = "codecs", feature = "jpeg", feature = "webp"))]
@@ -66,7 +66,8 @@ static READ_ONLY: &[Format] = &[
 /// floating-point numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// Integer values from 0 to 255, to which the [`Transfer`] function has been applied.
+    /// Integer values from 0 to 255, or to 65535 with [`ChannelBits::Sixteen`](crate::ChannelBits),
+    /// to which the [`Transfer`] function has been applied.
     EightBit,
     /// Floating-point values, which can be greater than 1.
     Float,
@@ -75,7 +76,7 @@ pub enum Depth {
 /// Options for encoding a picture with [`Format::write`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions<'a> {
-    /// Conversion of linear colours to 8-bit values. Floating-point formats ignore this conversion.
+    /// Conversion of linear colours to integer values. Floating-point formats ignore it.
     pub display: Display,
     /// Metadata as pairs of a name and a text, stored only by formats that support it.
     pub attributes: &'a [(&'static str, String)],
@@ -186,6 +187,11 @@ impl Format {
         (self.encode)(layers, options, out)
     }
 
+    /// Returns true if the format can be written with 16 bits per channel.
+    pub fn supports_sixteen_bits(&self) -> bool {
+        self.rows.is_some_and(|rows| rows.sixteen_bits)
+    }
+
     pub(super) fn head(&self, bytes: &[u8]) -> Result<ImageHeader, ImageError> {
         self.catch(|| (self.head)(bytes))
     }
@@ -222,6 +228,9 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
     let all = || FORMATS.iter().chain(READ_ONLY);
     let by_content = all().find(|format| (format.has_signature)(bytes));
+    if let (None, Some(diag::StandIn { what, help, .. })) = (by_content, diag::stand_in(bytes)) {
+        return Err(ImageError::StandIn { name: name.into(), what, help });
+    }
     let by_name = || all().find(|format| format.has_extension(name));
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
@@ -242,13 +251,13 @@ fn extension(path: &str) -> Option<String> {
     Some(Path::new(path).extension()?.to_str()?.to_lowercase())
 }
 
-/// Returns the conversion of a layer to 8-bit values.
+/// Returns the conversion of a layer to integer values.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
     match (layer.kind, options.display.transfer) {
         // Applying a transfer function to data would falsify it. `Course`, which only truncates, is
         // an exception, because the course applied it to all pictures.
-        (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
-        (LayerKind::Data, transfer) => transfer.into(),
+        (LayerKind::Data, Transfer::Srgb) => Display { bits: options.display.bits, ..Transfer::Linear.into() },
+        (LayerKind::Data, transfer) => Display { bits: options.display.bits, ..transfer.into() },
         _ => options.display,
     }
 }

@@ -10,6 +10,7 @@ mod content;
 pub mod denoise;
 mod display;
 mod error;
+mod exposure;
 mod formats;
 mod half;
 mod limits;
@@ -26,8 +27,9 @@ mod conformance;
 
 pub use color::{Color, LUMINANCE, LUMINANCE_F64};
 pub use content::Content;
-pub use display::{Display, Tone};
+pub use display::{ChannelBits, Display, Tone};
 pub use error::ImageError;
+pub use exposure::automatic_exposure;
 pub use formats::{
     Depth, FORMATS, Format, Raster, RowFormat, RowLayout, RowWriter, WriteOptions, extension_of, format_for,
 };

@@ -43,6 +43,16 @@ impl Transfer {
         }
     }
 
+    /// Converts a linear value to a 16-bit value, clamped to 0..=65535. NaN becomes 0.
+    pub fn encode16(self, value: f32) -> u16 {
+        let value = value.clamp(0.0, 1.0);
+        match self {
+            Transfer::Srgb => (srgb_from_linear(value) * 65535.0).round() as u16,
+            Transfer::Linear => (value * 65535.0).round() as u16,
+            Transfer::Course => (value * 65535.0) as u16,
+        }
+    }
+
     /// Converts each channel of a colour to 8 bits.
     pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
         pixel.to_array().map(|value| self.encode(value))
@@ -148,6 +158,13 @@ mod tests {
         assert_eq!(row(-1.0), [0, 0, 0]);
         assert_eq!(row(7.0), [255, 255, 255]);
         assert_eq!(row(f32::NAN), [0, 0, 0]);
+        let row16 = |value| Transfer::ALL.map(|transfer| transfer.encode16(value));
+        assert_eq!(row16(0.0), [0, 0, 0]);
+        assert_eq!(row16(1.0), [65535, 65535, 65535]);
+        // 1.055 * 0.5^(1 / 2.4) - 0.055 = 0.735357, times 65535.
+        assert_eq!(row16(0.5), [48192, 32768, 32767]);
+        assert_eq!(row16(7.0), [65535, 65535, 65535]);
+        assert_eq!(row16(f32::NAN), [0, 0, 0]);
         assert_eq!(row(f32::INFINITY), [255, 255, 0]);
         assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
         // The first value still fits into an `int` after scaling, and the larger ones do not.

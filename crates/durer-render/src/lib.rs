@@ -5,6 +5,7 @@ mod clock;
 pub mod compile;
 pub mod film;
 pub mod integrator;
+pub mod measure;
 pub mod render;
 pub mod threads;
 pub mod world;

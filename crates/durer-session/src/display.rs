@@ -6,7 +6,7 @@ use durer::image::{Display, Layer, Tone, Transfer};
 /// meaning as the options `--exposure` and `--tone`.
 pub(crate) fn display(stops: f32, tone: &str) -> Display {
     let tone = Tone::from_name(tone).unwrap_or_default();
-    Display { exposure: durer::math::fp::pow(2.0, stops), tone, transfer: Transfer::Srgb }
+    Display { exposure: durer::math::fp::pow(2.0, stops), tone, ..Transfer::Srgb.into() }
 }
 
 /// Returns four bytes for each pixel: red, green, blue and coverage.

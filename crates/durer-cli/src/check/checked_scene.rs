@@ -46,7 +46,7 @@ pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Che
     let findings = match (&loaded, &world) {
         (Some(loaded), Some(world)) => {
             let job = job(&args.job, Some(&args.view), loaded, false)?;
-            let exposure = args.exposure.factor()?;
+            let exposure = args.exposure.factor(None);
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
             let input = CheckInput { scene, world, dialect, files, job: &job, exposure, rejected: None };
             let mut findings = check(&input, &diagnostics);

@@ -4,6 +4,7 @@
 //! A file begins with lines of text, the last of which starts with `TILT=`. The lines are followed
 //! by numbers: the number of angles of each kind, the angles, and the candela values.
 
+use super::Luminaire;
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
@@ -78,13 +79,26 @@ impl Numbers<'_> {
 }
 
 /// Reads an IES file. If there are errors, adds them to the diagnostics and returns `None`.
-pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
-    let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
+pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Luminaire> {
+    let (luminaire, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
-    Some(profile)
+    Some(luminaire)
 }
 
-fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>), Box<Diagnostic>> {
+/// Returns the names in the keyword lines before `TILT=`, such as `[MANUFAC] Name`.
+fn names(text: &str) -> Vec<(&'static str, String)> {
+    const KEYWORDS: [(&str, &str); 4] =
+        [("[MANUFAC]", "manufacturer"), ("[LUMCAT]", "catalogue"), ("[LUMINAIRE]", "luminaire"), ("[LAMP]", "lamp")];
+    let head = text.lines().take_while(|line| !line.trim().starts_with("TILT="));
+    let name = |line: &str| {
+        let (keyword, what) = KEYWORDS.iter().find(|(keyword, _)| line.trim().starts_with(keyword))?;
+        let name = line.trim()[keyword.len()..].trim().to_string();
+        (!name.is_empty()).then_some((*what, name))
+    };
+    head.filter_map(name).collect()
+}
+
+fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diagnostic>> {
     let mut numbers = Numbers { text, at: 0, file };
     let mut tilt = None;
     let mut place = 0;
@@ -123,8 +137,8 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
             ));
         }
     }
-    numbers.next("number of light sources")?;
-    numbers.next("lumens per light source")?;
+    let (sources, _) = numbers.next("number of light sources")?;
+    let (lumens, _) = numbers.next("lumens per light source")?;
     let multiplier = numbers.factor("multiplier")?;
     let verticals = numbers.count("number of vertical angles")?;
     let horizontals = numbers.count("number of horizontal angles")?;
@@ -142,7 +156,7 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     // The standard of 1986 defines this number as a photometric factor. In later standards, this
     // number is reserved and always 1.
     let (reserved, _) = numbers.next("reserved number")?;
-    numbers.next("watts")?;
+    let (watts, _) = numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;
     let around = numbers.at + text[numbers.at..].find(|c: char| !c.is_whitespace()).unwrap_or(0);
     let mut horizontal = numbers.angles(horizontals, "horizontal angle")?;
@@ -188,7 +202,15 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
             "more numbers follow the last candela value, for example because of decimal commas or missing angles",
         );
     }
-    Ok((PhotometricProfile { kind, vertical, horizontal, candela }, odd))
+    let luminaire = Luminaire {
+        profile: PhotometricProfile { kind, vertical, horizontal, candela },
+        format: "IES LM-63",
+        watts: Some(watts).filter(|watts| *watts > 0.0),
+        // The standard writes -1 for absolute photometry.
+        source_flux: Some(sources * lumens).filter(|flux| *flux > 0.0),
+        names: names(text),
+    };
+    Ok((luminaire, odd))
 }
 
 /// Encodes a profile as an IES file that reads back exactly, bit for bit.
@@ -220,7 +242,7 @@ mod tests {
         let mut files = Files::default();
         let file = files.add("lamp.ies", text.as_bytes().into());
         let mut diagnostics = Diagnostics::default();
-        read(text, file, &mut diagnostics).ok_or_else(|| {
+        read(text, file, &mut diagnostics).map(|luminaire| luminaire.profile).ok_or_else(|| {
             let error = diagnostics.iter().next().unwrap();
             let (line, column) = files.position(error.span.unwrap()).unwrap();
             format!("{line}:{column} {}", error.message)
@@ -277,7 +299,7 @@ mod tests {
             let mut files = Files::default();
             let file = files.add("lamp.ies", text.as_bytes().into());
             let mut diagnostics = Diagnostics::default();
-            let profile = read(text, file, &mut diagnostics).unwrap();
+            let profile = read(text, file, &mut diagnostics).unwrap().profile;
             let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
             let (line, column) = files.position(warning.span.unwrap()).unwrap();
             assert!(

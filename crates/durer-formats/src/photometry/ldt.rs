@@ -9,6 +9,7 @@
 //! Beleuchtungsplaner*, Licht '90; the order of the lines follows the descriptions that Paul Bourke
 //! and Lighting Sciences have published.
 
+use super::Luminaire;
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
@@ -113,13 +114,14 @@ pub(super) fn recognise(text: &str) -> bool {
 }
 
 /// Reads a EULUMDAT file. If there are errors, adds them to the diagnostics and returns `None`.
-pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
+pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Luminaire> {
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }
 
-fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<PhotometricProfile> {
+fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Luminaire> {
     let mut lines = Lines { text, at: 0, file };
-    lines.skip(2, "manufacturer and file type")?;
+    let mut names = vec![("manufacturer", lines.next("manufacturer")?.0.to_string())];
+    lines.skip(1, "file type")?;
     let symmetry = match lines.integer("symmetry", 0, 4)? {
         0 => Symmetry::None,
         1 => Symmetry::Axis,
@@ -131,16 +133,23 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
     lines.skip(1, "distance between C planes")?;
     let verticals = lines.integer("number of intensities in each plane", 1, MAX_ANGLES)?;
     lines.skip(1, "distance between intensities")?;
-    lines.skip(5, "luminaire names and date")?;
+    lines.skip(1, "number of the report")?;
+    names.push(("luminaire", lines.next("luminaire name")?.0.to_string()));
+    names.push(("catalogue", lines.next("luminaire number")?.0.to_string()));
+    lines.skip(2, "file name and date")?;
     lines.skip(9, "size of the luminaire")?;
     lines.skip(2, "downward flux and light output ratio")?;
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
     let sets = lines.integer("number of sets of light sources", 1, 20)?;
     // The sets of light sources are alternatives, so use the first one.
-    lines.skip(2, "number and type of the light sources")?;
+    lines.skip(1, "number of the light sources")?;
+    names.push(("lamp", lines.next("type of the light sources")?.0.to_string()));
     let flux = lines.not_negative("flux of the light sources")?;
-    lines.skip(3 + 6 * (sets - 1), "colour and watts of the light sources")?;
+    lines.skip(2, "colour of the light sources")?;
+    // The number is not needed for the light, so text is accepted.
+    let watts = lines.next("watts of the light sources")?.0.replace(',', ".").parse::<f64>().ok();
+    lines.skip(6 * (sets - 1), "other sets of light sources")?;
     lines.skip(10, "direct ratios")?;
     let around = lines.at;
     let planes = lines.angles(count, "C angle", 360.0)?;
@@ -182,7 +191,14 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
         );
         diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
     }
-    Ok(profile)
+    names.retain(|(_, name)| !name.is_empty());
+    Ok(Luminaire {
+        profile,
+        format: "EULUMDAT",
+        watts: watts.filter(|watts| watts.is_finite() && *watts > 0.0),
+        source_flux: Some(flux).filter(|flux| *flux > 0.0),
+        names,
+    })
 }
 
 impl Lines<'_> {

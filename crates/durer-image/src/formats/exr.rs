@@ -40,7 +40,7 @@ pub const FORMAT: Format = Format {
 
 /// Format for writing row by row, which uses uncompressed blocks of one row so that all offsets are
 /// known in advance.
-static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, png: false };
+static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, sixteen_bits: false, png: false };
 
 /// Channels of a single layer, in the order in which each row stores them.
 fn letters(alpha: bool) -> &'static [&'static str] {

@@ -53,6 +53,7 @@ static ROWS: RowFormat = RowFormat {
             pack(&bytes, out);
         }
     },
+    sixteen_bits: false,
     png: false,
 };
 

@@ -24,6 +24,7 @@ static ROWS: RowFormat = RowFormat {
     bottom_up: true,
     head: |strip| Ok(format!("PF\n{} {}\n-1.0\n", strip.width, strip.height).into_bytes()),
     row: |_, _, pixels, _, out| out.extend(pixels.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes)),
+    sixteen_bits: false,
     png: false,
 };
 

@@ -1,7 +1,9 @@
-//! Portable Network Graphics format, with 8 bits per channel, lossless compression, and alpha for
+//! Portable Network Graphics format, with 8 or 16 bits per channel, lossless compression, and alpha for
 //! layers with coverage.
 
-use super::{Depth, Format, ImageError, ImageHeader, Raster, RowFormat, RowLayout, RowWriter, codec, rows};
+use super::{
+    ChannelBits, Depth, Format, ImageError, ImageHeader, Raster, RowFormat, RowLayout, RowWriter, codec, rows,
+};
 use ::image::ImageFormat;
 use ::png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use std::borrow::Cow;
@@ -32,7 +34,10 @@ pub(super) fn write_compressed<T, E: From<io::Error>>(
 ) -> Result<T, E> {
     let mut encoder = Encoder::new(out, strip.width, strip.height);
     encoder.set_color(if strip.alpha { ColorType::Rgba } else { ColorType::Rgb });
-    encoder.set_depth(BitDepth::Eight);
+    encoder.set_depth(match strip.display.bits {
+        ChannelBits::Eight => BitDepth::Eight,
+        ChannelBits::Sixteen => BitDepth::Sixteen,
+    });
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     let mut file = encoder.write_header().map_err(io::Error::from)?;
@@ -95,9 +100,7 @@ fn without_ancillary_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |_| Ok(Vec::new()),
-    row: |strip, _, pixels, coverage, out| {
-        let channels = if strip.alpha { 4 } else { 3 };
-        strip.eight_bit(pixels, coverage, |rgba| out.extend(&rgba[..channels]));
-    },
+    row: |strip, _, pixels, coverage, out| strip.append(pixels, coverage, if strip.alpha { 4 } else { 3 }, out),
+    sixteen_bits: true,
     png: true,
 };

@@ -1,6 +1,6 @@
 //! Netpbm formats, which are written as binary P6 and read in any of the variants P1 to P7.
 
-use super::{Depth, Format, RowFormat, RowLayout, codec, rows};
+use super::{ChannelBits, Depth, Format, RowFormat, RowLayout, codec, rows};
 use ::image::ImageFormat;
 
 const NAME: &str = "PPM";
@@ -22,11 +22,18 @@ pub const FORMAT: Format = Format {
 
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
-    head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
+    head: |strip| {
+        let most = match strip.display.bits {
+            ChannelBits::Eight => 255,
+            ChannelBits::Sixteen => 65535,
+        };
+        Ok(format!("P6\n{} {}\n{most}\n", strip.width, strip.height).into_bytes())
+    },
     row: |strip, _, pixels, coverage, out| {
         // The format does not support alpha.
-        RowLayout { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
+        RowLayout { alpha: false, ..*strip }.append(pixels, coverage, 3, out);
     },
+    sixteen_bits: true,
     png: false,
 };
 

@@ -1,6 +1,6 @@
 //! Row-by-row writing of pictures of any size.
 
-use super::{Display, Format, Image, ImageError, Layer, WriteOptions};
+use super::{ChannelBits, Display, Format, Image, ImageError, Layer, WriteOptions};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -17,6 +17,8 @@ pub struct RowFormat {
     pub(super) head: fn(&RowLayout) -> Result<Vec<u8>, ImageError>,
     /// Appends the bytes of the row that has the given number in the file.
     pub(super) row: fn(&RowLayout, u32, &[Vec3], &[f32], &mut Vec<u8>),
+    /// True if channels can have 16 bits.
+    pub(super) sixteen_bits: bool,
     /// True if the rows form a PNG file, whose encoder also writes the header.
     #[cfg_attr(not(feature = "codecs"), allow(dead_code))]
     pub(super) png: bool,
@@ -31,7 +33,7 @@ pub struct RowLayout {
     pub height: u32,
     /// True if alpha is stored in formats that support it.
     pub alpha: bool,
-    /// Conversion of linear colours to 8-bit values.
+    /// Conversion of linear colours to integer values.
     pub display: Display,
 }
 
@@ -47,15 +49,34 @@ impl RowLayout {
     /// there is alpha, the colours are not premultiplied (straight alpha).
     #[cfg(feature = "codecs")]
     pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
-        for (i, &pixel) in pixels.iter().enumerate() {
-            let (alone, opacity) = match coverage.get(i).filter(|_| self.alpha) {
-                Some(&share) if share > 0.0 => (pixel / share, crate::Transfer::Linear.encode(share)),
-                Some(_) => (Vec3::ZERO, 0),
-                None => (pixel, 255),
-            };
-            let [r, g, b] = self.display.encode_pixel(alone);
-            offer([r, g, b, opacity]);
+        self.straight(pixels, coverage).for_each(|(color, opacity)| {
+            let [r, g, b] = self.display.encode_pixel(color);
+            offer([r, g, b, crate::Transfer::Linear.encode(opacity)]);
+        });
+    }
+
+    /// Appends the first `channels` of the red, green, blue, and opacity values of each pixel in a
+    /// row. Values of 16 bits are stored with the most significant byte first.
+    #[cfg(feature = "codecs")]
+    pub(super) fn append(&self, pixels: &[Vec3], coverage: &[f32], channels: usize, out: &mut Vec<u8>) {
+        match self.display.bits {
+            ChannelBits::Eight => self.eight_bit(pixels, coverage, |rgba| out.extend(&rgba[..channels])),
+            ChannelBits::Sixteen => self.straight(pixels, coverage).for_each(|(color, opacity)| {
+                let [r, g, b] = self.display.encode_pixel16(color);
+                let rgba = [r, g, b, crate::Transfer::Linear.encode16(opacity)];
+                out.extend(rgba[..channels].iter().flat_map(|value| value.to_be_bytes()));
+            }),
         }
+    }
+
+    /// Iterates over the colours of a row that are not premultiplied, and their opacities.
+    #[cfg(feature = "codecs")]
+    fn straight(&self, pixels: &[Vec3], coverage: &[f32]) -> impl Iterator<Item = (Vec3, f32)> {
+        pixels.iter().enumerate().map(|(i, &pixel)| match coverage.get(i).filter(|_| self.alpha) {
+            Some(&share) if share > 0.0 => (pixel / share, share),
+            Some(_) => (Vec3::ZERO, 0.0),
+            None => (pixel, 1.0),
+        })
     }
 }
 

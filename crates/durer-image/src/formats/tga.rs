@@ -49,6 +49,7 @@ static ROWS: RowFormat = RowFormat {
         let channels = if strip.alpha { 4 } else { 3 };
         strip.eight_bit(pixels, coverage, |[r, g, b, a]| out.extend(&[b, g, r, a][..channels]));
     },
+    sixteen_bits: false,
     png: false,
 };
 

@@ -15,7 +15,7 @@ pub use area::EmitterShape;
 pub use directional::DirectionalLight;
 pub use emitter_point::{EmitterPoint, EmitterTransform};
 use glam::DVec3;
-pub use photometric::{PhotometricLight, PhotometricProfile};
+pub use photometric::{PhotometricLight, PhotometricProfile, PhotometricSummary, ProfileKind};
 pub use point::PointLight;
 pub use spot::{Fade, SpotLight};
 

@@ -202,21 +202,6 @@ impl PhotometricProfile {
             _ => angle,
         }
     }
-
-    /// Luminous flux in lumens. Apart from the sine factor, the result is exact for a profile that
-    /// is linear between the angles.
-    pub fn flux(&self) -> f64 {
-        let (rows, columns) = (720_u32, 360_u32);
-        let mut sum = 0.0;
-        for i in 0..rows {
-            let (sin, cos) = fp::sin_cos_degrees((f64::from(i) + 0.5) * 180.0 / f64::from(rows));
-            for j in 0..columns {
-                let (s, c) = fp::sin_cos_degrees((f64::from(j) + 0.5) * 360.0 / f64::from(columns));
-                sum += f64::from(self.at(Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32))) * sin;
-            }
-        }
-        sum * 2.0 * std::f64::consts::PI * std::f64::consts::PI / f64::from(rows * columns)
-    }
 }
 
 /// Index of the last angle at or before `wanted`, and the position between that angle and the next
@@ -233,3 +218,7 @@ fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
     let i = angles.partition_point(|&angle| angle <= wanted).clamp(1, angles.len() - 1) - 1;
     Some((i, ((wanted - angles[i]) / (angles[i + 1] - angles[i])).clamp(0.0, 1.0)))
 }
+
+mod summary;
+
+pub use summary::PhotometricSummary;

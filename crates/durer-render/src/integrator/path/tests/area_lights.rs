@@ -1,8 +1,11 @@
 //! Tests of emitters of all shapes, with light sampling and with BSDF sampling.
 
 use super::*;
+use durer_scene::describe::DescribedKind as _;
+use durer_scene::shape::Primitive;
 
-const SHAPES: [&str; 8] = [
+/// Shapes that can be sampled as lights; the first six are closed.
+const SHAPES: [&str; 10] = [
     "Sphere { center 0 0 0 radius 0.5 }",
     "Ellipsoid { center 0 0 0 radii 0.6 0.3 0.5 }",
     "Box { min -0.5 -0.3 -0.4 max 0.5 0.3 0.4 }",
@@ -11,7 +14,20 @@ const SHAPES: [&str; 8] = [
     "Cylinder { base 0 -0.5 0 top 0.2 0.4 0 radius 0.4 }",
     "Torus { center 0 0 0 axis 0.2 1 0 majorRadius 0.4 minorRadius 0.15 }",
     "Disc { center 0 0 0 normal 0 -1 0.2 radius 0.6 innerRadius 0.2 }",
+    "Rectangle { corner -0.5 0 -0.4 edge0 1 0 0 edge1 0.1 0.1 0.8 }",
+    "Triangle { vertex0 -0.5 0 -0.4 vertex1 0.5 0 -0.4 vertex2 0 0.1 0.5 }",
 ];
+
+#[test]
+fn every_primitive_is_tested_as_a_light() {
+    // Planes and quadrics are infinite or have no simple area, so only BSDF sampling finds them.
+    let exempt = ["Plane", "Quadric"];
+    for kind in Primitive::kinds() {
+        let name = kind.keyword(Dialect::Durer);
+        let tested = SHAPES.iter().any(|shape| shape.split(' ').next() == Some(name));
+        assert!(tested != exempt.contains(&name), "{name}");
+    }
+}
 
 /// Transforms of the shapes: a translation, a slight scaling, and one that stretches, rotates,
 /// shears and mirrors.

@@ -1,0 +1,68 @@
+//! Reads lists of measuring points.
+
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
+use durer::math::Vec3;
+use std::path::Path;
+
+/// Maximum size of a list, in bytes.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// Reads lines with `x,y,z` or `x,y,z,nx,ny,nz`. A first line with names is skipped, and so are
+/// empty lines and lines that begin with `#`.
+pub fn read(path: &Path, registry: &mut FileRegistry) -> Result<Vec<(Vec3, Option<Vec3>)>, Failure> {
+    registry.register_input(path)?;
+    let cannot = |why: String| invalid_input(format!("cannot read `{}`: {why}", path.display()));
+    let metadata = std::fs::metadata(path).map_err(|error| cannot(error.to_string()))?;
+    if !metadata.is_file() || metadata.len() > MAX_BYTES {
+        return Err(cannot(format!("it is not a regular file of at most {} MiB", MAX_BYTES >> 20)));
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| cannot(error.to_string()))?;
+    parse(&text).map_err(|error| invalid_input(format!("{}:{error}", path.display())))
+}
+
+fn parse(text: &str) -> Result<Vec<(Vec3, Option<Vec3>)>, String> {
+    let mut points = Vec::new();
+    for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let words: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
+        let numbers: Option<Vec<f32>> =
+            words.iter().map(|word| word.parse().ok().filter(|number: &f32| number.is_finite())).collect();
+        let is_heading = points.is_empty() && words.iter().all(|word| word.parse::<f32>().is_err());
+        match numbers.as_deref() {
+            Some([x, y, z]) => points.push((Vec3::new(*x, *y, *z), None)),
+            Some([x, y, z, a, b, c]) => match Vec3::new(*a, *b, *c).try_normalize() {
+                Some(normal) => points.push((Vec3::new(*x, *y, *z), Some(normal))),
+                None => return Err(format!("{}:1: the normal must not be 0,0,0", number + 1)),
+            },
+            None if is_heading => {}
+            _ => return Err(format!("{}:1: expected x,y,z or x,y,z,nx,ny,nz, found `{line}`", number + 1)),
+        }
+    }
+    if points.is_empty() { Err("1:1: the list has no points".into()) } else { Ok(points) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+    use durer::math::Vec3;
+
+    #[test]
+    fn lists_of_points() {
+        let list = parse("\u{feff}x;y;z\r\n1;2;3\n\n# desk\n0, 0.5, -1, 0, 0, 2\n").unwrap();
+        assert_eq!(list, [(Vec3::new(1.0, 2.0, 3.0), None), (Vec3::new(0.0, 0.5, -1.0), Some(Vec3::Z))]);
+        for (text, error) in [
+            ("", "1:1: the list has no points"),
+            ("1,2,3\n1,2", "2:1: expected x,y,z or x,y,z,nx,ny,nz, found `1,2`"),
+            ("1,2,x", "1:1: expected x,y,z"),
+            ("1,2,inf", "1:1: expected x,y,z"),
+            ("1,2,3\nx,y,z", "2:1: expected x,y,z"),
+            ("1,2,3,0,0,0", "1:1: the normal must not be 0,0,0"),
+        ] {
+            assert!(parse(text).unwrap_err().starts_with(error), "{text}: {:?}", parse(text));
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Illuminance and irradiance at points of a scene, with standard errors.
+
+use crate::integrator::{Integrate as _, Path};
+use durer_scene::math::{Color, Vec3};
+use durer_scene::sampler::SampleId;
+use rayon::prelude::*;
+
+/// Samples per point in the first pass with an error target. Later passes double the number.
+const FIRST_PASS: u32 = 256;
+
+/// Point at which light is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    /// Position in world space.
+    pub point: Vec3,
+    /// Unit normal on the side from which light is measured.
+    pub normal: Vec3,
+}
+
+/// Options of [`measure`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasureOptions {
+    /// Samples per point; the maximum number with `error`.
+    pub samples: u32,
+    /// Relative standard error of the illuminance at which a point needs no more samples, for
+    /// example 0.01. Points without any light found take all samples.
+    pub error: Option<f64>,
+    /// Seed of the random number generator.
+    pub seed: u64,
+    /// Luminous efficacy of each channel: the illuminance is the dot product with the irradiance.
+    pub lumens: Color,
+}
+
+/// Light that arrives at a [`Sensor`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Irradiance per channel.
+    pub irradiance: [f64; 3],
+    /// Illuminance.
+    pub illuminance: f64,
+    /// Standard error of the illuminance, if the samples were independent. It includes the effect
+    /// of one more sample of a light that only BSDF sampling can find.
+    pub error: f64,
+    /// Number of samples that were taken.
+    pub samples: u32,
+}
+
+/// Result of [`measure`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Light at each sensor.
+    pub points: Vec<Measured>,
+    /// True if lights that only BSDF sampling can find dominate the error of a point.
+    pub has_rare_light: bool,
+}
+
+/// Minimum, average and uniformity of several illuminances. Source: EN 12464-1, section 3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uniformity {
+    /// Minimum illuminance.
+    pub min: f64,
+    /// Average illuminance.
+    pub average: f64,
+    /// Maximum illuminance.
+    pub max: f64,
+}
+
+impl Uniformity {
+    /// Computes the figures, or returns `None` without points.
+    pub fn of(points: &[Measured]) -> Option<Uniformity> {
+        let values = || points.iter().map(|point| point.illuminance);
+        let average = values().sum::<f64>() / points.len() as f64;
+        let (min, max) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        (!points.is_empty()).then_some(Uniformity { min, average, max })
+    }
+
+    /// Minimum divided by the average (U0); 0 in the dark.
+    pub fn u0(&self) -> f64 {
+        if self.average > 0.0 { self.min / self.average } else { 0.0 }
+    }
+
+    /// Minimum divided by the maximum (U1); 0 in the dark.
+    pub fn u1(&self) -> f64 {
+        if self.max > 0.0 { self.min / self.max } else { 0.0 }
+    }
+}
+
+/// Sums over the samples at one sensor.
+#[derive(Clone, Default)]
+struct Sums {
+    light: [f64; 3],
+    bright: f64,
+    squares: f64,
+    samples: u32,
+}
+
+impl Sums {
+    fn add(&mut self, light: Color, lumens: Color) {
+        let brightness = f64::from(light.dot(lumens));
+        self.light = std::array::from_fn(|i| self.light[i] + f64::from(light[i]));
+        self.bright += brightness;
+        self.squares += brightness * brightness;
+        self.samples += 1;
+    }
+
+    /// Returns the means and the standard error. `rare` is the largest value of a light that only
+    /// BSDF sampling can find. One more sample of this kind would raise the mean by `rare` divided
+    /// by the number of samples, so the error includes that amount.
+    fn mean(&self, rare: f64) -> Measured {
+        let n = f64::from(self.samples);
+        let mean = self.bright / n;
+        let variance = (self.squares / n - mean * mean).max(0.0) / n;
+        Measured {
+            irradiance: self.light.map(|sum| sum / n),
+            illuminance: mean,
+            error: (variance + (rare / n) * (rare / n)).sqrt(),
+            samples: self.samples,
+        }
+    }
+}
+
+/// Measures the light at points. The result does not depend on the number of threads. `progress`
+/// receives the finished share of the samples, from 0 to 1.
+pub fn measure(
+    path: &Path,
+    sensors: &[Sensor],
+    options: &MeasureOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Measurement {
+    let MeasureOptions { samples, error, seed, lumens } = *options;
+    let rare = f64::from(path.max_rare_contribution(|color| color.dot(lumens)));
+    let mut sums = vec![Sums::default(); sensors.len()];
+    let mut first = 0;
+    while first < samples {
+        // Photons are traced again for every sample.
+        let step = match (&path.photons, error) {
+            (Some(_), _) => 1,
+            (None, Some(_)) => first.max(FIRST_PASS),
+            (None, None) => samples.div_ceil(16).max(FIRST_PASS),
+        };
+        let end = samples.min(first.saturating_add(step));
+        let is_checked = error.is_some() && first >= FIRST_PASS && (path.photons.is_none() || first.is_power_of_two());
+        path.prepare(first);
+        sums.par_iter_mut().zip(sensors).enumerate().for_each(|(number, (sums, sensor))| {
+            // A sensor that has once reached the target has fewer samples than the pass assumes.
+            if sums.samples < first || is_checked && is_precise(sums, rare, error) {
+                return;
+            }
+            for sample in first..end {
+                let id = SampleId::new(seed, (number as u32, 0), sample);
+                sums.add(path.irradiance(sensor.point.as_dvec3(), sensor.normal, id, &mut ()), lumens);
+            }
+        });
+        first = end;
+        progress(f64::from(first) / f64::from(samples));
+        if error.is_some() && sums.iter().all(|sums| sums.samples < first) {
+            break;
+        }
+    }
+    let points: Vec<Measured> = sums.iter().map(|sums| sums.mean(rare)).collect();
+    let is_rare = |point: &Measured| rare / f64::from(point.samples) > 0.01 * point.illuminance.max(point.error);
+    Measurement { has_rare_light: points.iter().any(is_rare), points }
+}
+
+/// Returns true if the relative standard error at a sensor has reached the target.
+fn is_precise(sums: &Sums, rare: f64, error: Option<f64>) -> bool {
+    let mean = sums.mean(rare);
+    mean.illuminance > 0.0 && error.is_some_and(|target| mean.error <= target * mean.illuminance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uniformity_of_values() {
+        let point = |illuminance| Measured { irradiance: [0.0; 3], illuminance, error: 0.0, samples: 1 };
+        let figures = Uniformity::of(&[200.0, 500.0, 800.0].map(point)).unwrap();
+        assert_eq!((figures.u0(), figures.u1(), figures.average), (0.4, 0.25, 500.0));
+        let dark = Uniformity::of(&[point(0.0)]).unwrap();
+        assert_eq!((dark.u0(), dark.u1()), (0.0, 0.0));
+        assert_eq!(Uniformity::of(&[]), None);
+    }
+}
