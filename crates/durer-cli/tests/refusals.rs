@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{ProgramOutput, SCENE, TestFolder};
+use common::{SCENE, TestFolder};
 use std::process::{Command, Stdio};
 
 #[test]
@@ -80,9 +80,12 @@ fn files_other_than_scenes_are_refused_at_once() {
 fn line_breaks_in_names_do_not_break_messages() {
     let folder = TestFolder::new();
     let broken = "a.txt\nerror: forged";
-    let output = ProgramOutput::of(folder.command("render -o p.png").arg(broken).output().unwrap());
-    assert_eq!(output.code, Some(2));
-    assert_eq!(output.err, format!("error: {broken:?} contains a line break; names and values must be on one line\n"));
+    let output = folder.command("render -o p.png").arg(broken).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        format!("error: {broken:?} contains a line break; names and values must be on one line\n")
+    );
     let gltf = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"b.bin%0Aerror: forged","byteLength":4}],
         "scenes":[{"nodes":[]}]}"#;
     folder.write("uri.gltf", gltf);
