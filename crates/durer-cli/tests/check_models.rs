@@ -111,6 +111,16 @@ const CASES: &[Case] = &[
         "light-faint",
     ),
     ("pbrt", PBRT, &[("[ 0.5 0.5 0.48 ]", "[ 0 0 0 ]")], "black-material"),
+    ("pbrt", PBRT, &[("WorldBegin\n", "")], "bad-place"),
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("LookAt 2 3 8  0 0.8 0  0 1 0\n", ""),
+            ("\"float fov\" 36\n", "\"float fov\" 36\nLookAt 2 3 8  0 0.8 0  0 1 0\n"),
+        ],
+        "bad-place",
+    ),
     ("xml", MITSUBA, &[], ""),
     ("xml", MITSUBA, &[("name=\"max_depth\" value=\"8\"", "name=\"max_depth\" value=\"1\"")], "no-bounces"),
     ("xml", MITSUBA, &[("angle=\"90\"", "angle=\"-90\"")], "lamp-turned"),
@@ -123,6 +133,7 @@ const CASES: &[Case] = &[
         "lamp-turned",
     ),
     ("rad", RADIANCE, &[("5 0.5 0.5 0.48", "5 178 26 26")], "color-range"),
+    ("rad", RADIANCE, &[("12  -4 -4 0", "9  -4 -4 0")], "bad-value"),
     ("ply", PLY, &[], ""),
     (
         "ply",

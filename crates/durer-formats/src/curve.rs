@@ -68,6 +68,10 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, ParseError> 
         }
         rows.push([nm, value]);
     }
+    if rows.last().is_some_and(|last| last[0] < 20.0) {
+        let message = "wavelengths must be in nanometres: these look like micrometres, so multiply them by 1000";
+        return Err((0..text.lines().next().map_or(0, str::len), message.into()));
+    }
     if rows.len() < 2 {
         return Err((0..0, "a spectrum needs at least two rows of a wavelength and a value".into()));
     }

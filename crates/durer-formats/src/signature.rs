@@ -74,6 +74,7 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         (None, _) if *what == LUMINAIRE => {
             format!("use the file in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")
         }
+        (None, _) if what.contains("word processor") => "save the document as plain text".into(),
         (None, _) if what.contains("archive") => "unpack the archive, which may contain the scene".into(),
         (None, true) => "a picture is not a model; use `--environment` to put the picture around a model".into(),
         (None, false) => "this format is not supported: convert the file to glTF".into(),

@@ -27,8 +27,10 @@ mod webp;
 
 pub use rows::{RowFormat, RowLayout, RowWriter};
 
+#[cfg(feature = "codecs")]
+use super::ChannelBits;
 use super::limits;
-use super::{ChannelBits, Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
+use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::panics::catch_panic;
 use durer_diag as diag;
 #[cfg(any(feature = "codecs", feature = "jpeg", feature = "webp"))]

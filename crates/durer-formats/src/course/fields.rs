@@ -442,6 +442,13 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
     let point = bare.replace(',', ".");
+    // Text editors and web pages replace the minus sign by dashes.
+    let dash = text.replace(['\u{2212}', '\u{2013}', '\u{2014}'], "-");
+    if dash != text && is_number(&dash) {
+        let found = text.chars().find(|c| !c.is_ascii()).unwrap_or('-');
+        let help = format!("`{found}` (U+{:04X}) is not the minus sign of a number: write `-`", u32::from(found));
+        return Some((help, Some(dash)));
+    }
     if is_number(&point) && bare.contains(',') && !bare.contains('.') {
         let help = "write decimals with a point, and separate numbers with spaces only";
         Some((help.into(), Some(point).filter(|_| bare == text)))

@@ -1,7 +1,7 @@
 //! Guesses the dialect of a scene and gives reasons for the guess.
 
 use super::lexer::{TokenKind, tokens};
-use super::words::dialects_of;
+use super::words::{dialects_of, is_reserved};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 
@@ -113,7 +113,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else if named
             && at(i + 2) == Some(TokenKind::Open)
             && word.ends_with("Material")
-            && dialects_of(&text(i + 1)).is_none()
+            && !is_reserved(&text(i + 1))
         {
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {

@@ -3,7 +3,7 @@
 use super::lexer::TokenKind;
 use super::nodes::set_material;
 use super::reader::Reader;
-use super::words::dialects_of;
+use super::words::is_reserved;
 use crate::growth::MAX_OBJECTS;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
@@ -13,7 +13,7 @@ impl Reader<'_, '_> {
     /// Reads the name of a material, which can come before the block of the material.
     pub(super) fn material_name(&mut self) -> Option<(String, Span)> {
         let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
-        let name = named.filter(|name| dialects_of(name).is_none())?;
+        let name = named.filter(|name| !is_reserved(name))?;
         let span = self.advance();
         self.report_foreign_word("names of materials", span, set::DURER);
         Some((name, span))
@@ -34,8 +34,7 @@ impl Reader<'_, '_> {
     pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
         let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
         // If a word of the language comes next, the number is missing.
-        let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
-        else {
+        let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || !is_reserved(name)) else {
             return self.integer(word);
         };
         let span = self.advance();
@@ -59,7 +58,7 @@ impl Reader<'_, '_> {
 
     /// Returns true if a word can be used as a name, and otherwise reports an error.
     fn is_name(&mut self, name: &str, span: Span) -> bool {
-        let taken = dialects_of(name).is_some();
+        let taken = is_reserved(name);
         let number = name.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
         if taken || number {
             let why = if taken { "a word of the language" } else { "a number" };

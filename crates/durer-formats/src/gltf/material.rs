@@ -230,6 +230,11 @@ impl Model<'_> {
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = unit_factor(&e, "transmissionFactor", 0.0);
+            if m.transmission_weight > 0.0 && m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none() {
+                let message = "this material is a metal, so `transmissionFactor` has no effect: `metallicFactor` is 1 \
+                               unless it is set to 0";
+                e.warning("metal-transmission", message);
+            }
             // The base colour tints transmitted light.
             m.transmission_color = m.base_color;
             m.transmission_color_texture = m.base_color_texture.clone();

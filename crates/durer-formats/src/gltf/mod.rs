@@ -247,7 +247,14 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
     if scene.root.is_none() && !root.report.has_errors() {
         let number = root.get("scene").and_then(|number| number.value.as_u64()).unwrap_or(0);
         let at = format!("/scenes/{number}");
-        root.report.report(Diagnostic::warning, "no-objects", &at, "the scene has no visible triangles");
+        let left_out = (0..nodes.len()).find(|i| nodes[*i].mesh.is_some() && !order.contains(i));
+        let message = match left_out {
+            Some(node) => {
+                format!("the scene has no visible triangles: node {node} has a mesh, but is not in the scene")
+            }
+            None => "the scene has no visible triangles".to_string(),
+        };
+        root.report.report(Diagnostic::warning, "no-objects", &at, &message);
     }
     Some(scene)
 }

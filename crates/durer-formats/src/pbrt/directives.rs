@@ -121,6 +121,11 @@ impl Reader<'_> {
                 self.skip();
             }
         }
+        if let (Some(early), Some(camera), false) = (self.too_early, &self.camera, self.in_world) {
+            let message = "`WorldBegin` is missing: the transforms of the camera also apply to the objects";
+            let warning = Diagnostic::warning(message).code("bad-place").at(early).related(camera.at, "the camera");
+            self.report.push(warning.help("write `WorldBegin` before this directive"));
+        }
         if !self.report.is_full() {
             self.finish();
         }
@@ -192,7 +197,14 @@ impl Reader<'_> {
                 None => report.error(at, "the axis of a rotation must not be 0 0 0"),
             },
             "LookAt" => match look_at(self.numbers(at)?) {
-                Some(map) => self.state.transforms.apply(map),
+                Some(map) => {
+                    if let Some(camera) = self.camera.as_ref().filter(|_| !self.in_world) {
+                        let warning = Diagnostic::warning("`LookAt` after `Camera` does not move the camera");
+                        let warning = warning.code("bad-place").at(at).related(camera.at, "the camera");
+                        report.push(warning.help("write `LookAt` before `Camera`"));
+                    }
+                    self.state.transforms.apply(map);
+                }
                 None => report.error(
                     at,
                     "the eye and the target of `LookAt` must differ, and `up` must not be parallel to the viewing \

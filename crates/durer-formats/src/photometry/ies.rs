@@ -67,7 +67,9 @@ impl Numbers<'_> {
         for _ in 0..count {
             let (angle, start) = self.next(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
-                return Err(self.error(start, self.at, format!("the {what}s must be in ascending order")));
+                let error = self.error(start, self.at, format!("the {what}s must be in ascending order"));
+                let help = format!("the header declares {count} {what}s: check the number, and that the file has all");
+                return Err(Box::new((*error).help(help)));
             }
             if angle.abs() > 360.0 {
                 return Err(self.error(start, self.at, format!("a {what} must lie between -360 and 360 degrees")));

@@ -23,6 +23,13 @@ impl RadPrimitive {
     /// it is then unknown where the next primitive starts.
     pub fn read(modifier: Word, words: &mut Words, report: &SharedReport) -> Option<RadPrimitive> {
         let start = modifier.at;
+        if modifier.text.parse::<f32>().is_ok() {
+            let error = Diagnostic::error(format!("expected a primitive, found the number {}", modifier.quoted()));
+            let help =
+                "the primitive before it declares fewer numbers than follow it, or the name of a modifier is missing";
+            report.push(error.code("bad-value").at(start).help(help));
+            return None;
+        }
         let mut next = || {
             let word = words.next();
             if word.is_none() {

@@ -7,7 +7,7 @@ use super::reader::{BoundMaterial, Reader};
 use super::shader::{self, Input, Texture, input, shader_of};
 use super::stage::Prim;
 use crate::pictures::asset;
-use durer_diag::Span;
+use durer_diag::{Diagnostic, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
@@ -38,6 +38,11 @@ impl Reader<'_, '_> {
     pub fn display_material(&mut self, prim: &Prim, at: Span) -> Option<u32> {
         let color = Primvar::read(self.stage, prim, "primvars:displayColor", 3, Interpolation::Constant)?;
         let opacity = Primvar::read(self.stage, prim, "primvars:displayOpacity", 1, Interpolation::Constant);
+        if color.values.iter().any(|value| *value > 1.5) {
+            let warning = Diagnostic::warning("`displayColor` exceeds 1: colours go from 0 to 1, not to 255");
+            let help = "divide the values by 255, and convert them from sRGB to linear values";
+            self.stage.files.report.push(warning.code("color-range").at(at).help(help));
+        }
         let color = Vec3::from_array(std::array::from_fn(|k| color.values[k] as f32)).clamp(Vec3::ZERO, Vec3::ONE);
         let opacity = opacity.map_or(1.0, |opacity| opacity.values[0] as f32).clamp(0.0, 1.0);
         let key = format!("{color:?} {opacity}");

@@ -1,6 +1,8 @@
 //! Row-by-row writing of pictures of any size.
 
-use super::{ChannelBits, Display, Format, Image, ImageError, Layer, WriteOptions};
+#[cfg(feature = "codecs")]
+use super::ChannelBits;
+use super::{Display, Format, Image, ImageError, Layer, WriteOptions};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};

@@ -20,6 +20,7 @@ use durer_bvh::{Bvh, Grid, PrimitivePacks};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
 use durer_scene::camera::{CameraBasis, Projection};
+use durer_scene::describe::{DescribedKind as _, Value};
 use durer_scene::dialect::{Dialect, DialectRules, MeshNormals, Quirk};
 use durer_scene::light::{DirectionalLight, Illuminate as _, Light};
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
@@ -384,6 +385,13 @@ fn sun(background: &scene::Background) -> Option<Light> {
     Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
+/// Returns the field that sets the strength of a light in photometric units, if it is 0.
+fn zero_strength(light: &Light) -> Option<&'static str> {
+    let fields = light.fields().iter().enumerate();
+    let mut fields = fields.filter(|(_, field)| ["candela", "lumens", "lux"].contains(&field.name));
+    fields.find(|(i, _)| light.get(*i) == Some(Value::Float(0.0))).map(|(_, field)| field.name)
+}
+
 /// Returns the lights and the ambient light as the dialect interprets them.
 fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
@@ -406,10 +414,13 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
         return (Vec::new(), ambient);
     }
     for light in written {
-        if light.value.color() == Color::ZERO {
-            let message = "this light has no effect: its `color` is 0 0 0";
-            diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
-        }
+        let value = match zero_strength(&light.value) {
+            _ if light.value.color() == Color::ZERO => "`color` is 0 0 0".to_string(),
+            Some(field) => format!("`{field}` is 0"),
+            None => continue,
+        };
+        let message = format!("this light has no effect: its {value}");
+        diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
     }
     let compiled: Vec<Light> = written.iter().map(|light| rules::light(&light.value, rules)).collect();
     for (light, written) in compiled.iter().zip(written) {

@@ -20,6 +20,19 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
         };
         let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
         let factor = 0.8 / most.max(1e-30);
+        if let Some((field, value)) = strength(scene_probe, span)
+            && let Ok(written) = scene_probe.text(value).parse::<f32>()
+        {
+            let try_it = format!("try `{field} {}`", number(written * factor));
+            let help = match factor > 1000.0 && field != "lux" {
+                true => format!(
+                    "distances are in the units of the scene, and light in `{field}` fades with their square: scale \
+                     the scene if its unit is a millimetre, or {try_it}"
+                ),
+                false => format!("the light is about {} times too weak: {try_it}", number(factor)),
+            };
+            return Some(diagnostic.at(value).help(help));
+        }
         let material = &description(scene_probe, light)?.value;
         let Some(point) = point(material) else {
             let color = material.color() * factor;
@@ -65,6 +78,12 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
         let help = format!("the light is about {} times too weak: try `{field} {text}`", number(factor));
         Some(diagnostic.at(value).fix(value, text).help(help))
     })
+}
+
+/// Returns the field that sets the strength of a light in photometric units, and the span of its
+/// value.
+pub(super) fn strength(scene_probe: &SceneProbe, light: Span) -> Option<(&'static str, Span)> {
+    ["candela", "lumens", "lux"].into_iter().find_map(|field| Some((field, scene_probe.field_span(light, &[field])?)))
 }
 
 /// Returns true if different attenuation coefficients would give the light a usual brightness at

@@ -27,11 +27,19 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
         // The opposite direction is usually the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - point).normalize_or(Vec3::NEG_Y);
-        let negated = turned.dot(to) > 0.7;
-        let text = vector(if negated { -direction } else { middle - point });
+        // The beam must reach the objects after that.
+        let (_, edge) = fp::sin_cos_degrees(f64::from(light.value.cone().unwrap_or(90.0).clamp(5.0, 45.0)));
+        let negated = f64::from(turned.dot(to)) > edge;
+        let is_target = (direction - middle).length() < 0.3 * (middle - point).length() && direction != middle - point;
+        let text = vector(if negated && !is_target { -direction } else { middle - point });
         let model = scene_probe.model_format().is_some();
         let help = match negated {
             _ if model => "turn the light towards the visible objects".to_string(),
+            _ if is_target => format!(
+                "`direction` is a direction, not the point to aim at: write the point minus the position, `direction \
+                 {}`",
+                vector(middle - point)
+            ),
             true => format!(
                 "negate the direction: write `direction {text}`; `direction` is the direction in which the light travels"
             ),
@@ -75,7 +83,13 @@ fn missing(
 ) -> Vec<Finding> {
     let lights = scene_probe.world().lights().len().min(MAX_FINDINGS);
     let mut findings = Vec::new();
-    for number in (0..lights).filter(|&light| scene_probe.aims()[light] == Some(wanted)) {
+    // A luminaire whose intensities are all 0 lights nothing, wherever it points.
+    let is_dark = |light: &usize| {
+        let profile = scene_probe.world().profiles().get(*light).and_then(Option::as_ref);
+        profile.is_some_and(|profile| profile.max_candela() == 0.0)
+    };
+    for number in (0..lights).filter(|&light| scene_probe.aims()[light] == Some(wanted)).filter(|light| !is_dark(light))
+    {
         let (Some(light), Some((diagnostic, span))) =
             (description(scene_probe, number), no_contribution(scene_probe, number, String::new()))
         else {

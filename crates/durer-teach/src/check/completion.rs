@@ -21,7 +21,14 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 true => "no light reaches the visible surfaces".into(),
                 false => "this light contributes nothing to the picture".into(),
             });
-            if let Some(value) = finding.diagnostic.span.and_then(|span| scene_probe.field_span(span, &["color"])) {
+            let strength = finding.diagnostic.span.and_then(|span| super::attenuation::strength(scene_probe, span));
+            let value = strength.filter(|(field, _)| finding.diagnostic.message.contains(&format!("`{field}`")));
+            if let Some((field, value)) = value {
+                finding.diagnostic.span = Some(value);
+                finding.diagnostic.help.get_or_insert(format!("write a `{field}` above 0"));
+            } else if let Some(value) =
+                finding.diagnostic.span.and_then(|span| scene_probe.field_span(span, &["color"]))
+            {
                 finding.diagnostic.span = Some(value);
                 finding.diagnostic.help.get_or_insert("for white light, write `color 1 1 1`".into());
             }
@@ -36,7 +43,7 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 false => "the environment emits no light and is invisible".into(),
             });
         }
-        "no-falloff" => finding.affects_whole_picture = true,
+        "no-falloff" | "bad-place" => finding.affects_whole_picture = true,
         "no-objects" => {
             finding.affects_whole_picture = true;
             finding.diagnostic.effect = Some("every ray misses, so the picture shows only the background".into());

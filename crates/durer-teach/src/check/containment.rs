@@ -17,7 +17,8 @@ const DIRECTIONS: [Vec3; 5] = [
 pub(super) fn containing_objects(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects()[*object as usize].bounds();
-        bounds.is_some_and(|b| b.contains(point))
+        // A flat object, such as a single polygon, contains nothing.
+        bounds.is_some_and(|b| b.contains(point) && b.size().min_element() > 0.0)
     };
     let mut inside: Vec<u32> = (0..world.objects().len() as u32).filter(boxed).collect();
     for direction in DIRECTIONS {

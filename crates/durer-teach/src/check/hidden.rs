@@ -3,7 +3,7 @@
 use super::finding::{Finding, counted, number, percent, vector};
 use super::scene_probe::SceneProbe;
 use super::shapes::plane;
-use super::visibility::{Visibility, has_eye, points, rays_to};
+use super::visibility::{Visibility, has_eye, past_hidden_backs, points, rays_to};
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection};
@@ -101,7 +101,8 @@ fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
     let (mut looked, mut covered) = (0, 0);
     for &other in &others {
         let rays = points(&objects[other]).into_iter().flat_map(|point| rays_to(scene_probe, point));
-        for hit in rays.filter_map(|ray| scene_probe.world().closest(&ray, &mut ())) {
+        let seen = rays.map(|ray| past_hidden_backs(scene_probe.world(), ray));
+        for hit in seen.filter_map(|ray| scene_probe.world().closest(&ray, &mut ())) {
             looked += usize::from(hit.object as usize == other || hit.object as usize == front);
             covered += usize::from(hit.object as usize == front);
         }
@@ -116,10 +117,13 @@ fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
             "the other objects are hardly visible, because this object covers {} of them",
             percent(covered, looked)
         ))
-        .help(format!(
-            "the object is {} in front of the camera: move it away, make it smaller, or move the camera back",
-            number(nearest[front])
-        ));
+        .help(match nearest[front] < 0.0 {
+            true => "this camera also sees what is behind its `center`: write `near 0`, or move the object".to_string(),
+            false => format!(
+                "the object is {} in front of the camera: move it away, make it smaller, or move the camera back",
+                number(nearest[front])
+            ),
+        });
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 

@@ -4,7 +4,7 @@
 use super::finding::{Finding, MAX_FINDINGS, counted, number, vector};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, triangle};
-use super::visibility::{Visibility, pixels};
+use super::visibility::{Visibility, past_hidden_backs, pixels, points, rays_to};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::camera::Projection;
@@ -20,6 +20,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     let nothing: Vec<u32> = super::objects::without_surface(scene_probe);
     // In a large scene, some objects are always hidden or outside the picture.
     let mut findings = far_away(scene_probe);
+    findings.extend(turned_away(scene_probe));
     let missing =
         visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
     if visibilities.len() > FEW_OBJECTS && missing * 3 < visibilities.len() {
@@ -112,6 +113,30 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic));
     }
     findings
+}
+
+/// Reports objects of which the camera sees only hidden backs.
+fn turned_away(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let turned = scene_probe.visibilities().iter().enumerate().filter(|(_, sight)| **sight == Visibility::TurnedAway);
+    let say = |(number, _): (usize, &Visibility)| {
+        let (world, object) = (scene_probe.world(), &scene_probe.world().objects()[number]);
+        // A wall that lets the camera look into a room hides its back on purpose.
+        let rays = points(object).into_iter().flat_map(|point| rays_to(scene_probe, point));
+        let seen = rays.filter_map(|ray| world.closest(&past_hidden_backs(world, ray), &mut ()));
+        if seen.into_iter().any(|hit| world.objects()[hit.object as usize].bounds().is_some()) {
+            return None;
+        }
+        let number = number as u32;
+        let is_simple = scene_probe.model_format().is_none() && world.objects().len() <= FEW_OBJECTS;
+        let severity = if is_simple { Severity::Warning } else { Severity::Note };
+        let message = format!("the {} shows the camera only its back", scene_probe.object(number));
+        let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
+            .at(scene_probe.object_span(number))
+            .effect("the object is invisible, because `backs hidden` hides the backs of its material")
+            .help("exchange its edges or two of its vertices, negate its normal, or remove `backs hidden`");
+        Some(Finding::from(diagnostic))
+    };
+    turned.filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Returns true if a plane separates an object from the camera.

@@ -170,6 +170,16 @@ pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
                 .help("use a texture that is white where the surface is present");
             return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["opacityTexture"])));
         }
+        if let Some(cutoff) = m.opacity_cutoff.filter(|cutoff| *cutoff > 1.0) {
+            let message =
+                format!("material {number} has the `opacityCutoff` {}, above any opacity", number_word(cutoff));
+            let diagnostic = Diagnostic::warning(message)
+                .effect("objects with this material are invisible: light passes through unchanged")
+                .help("opacity goes from 0 to 1, not to 255: write, for example, `opacityCutoff 0.5`");
+            let value = scene_probe.field_span(material.span, &["opacityCutoff"]);
+            let diagnostic = diagnostic.fix_at(value, "0.5");
+            return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["opacityCutoff"])));
+        }
         if m.opacity > 0.01 {
             return None;
         }

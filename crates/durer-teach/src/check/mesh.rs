@@ -327,13 +327,21 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
         let index = scene_probe.world().objects().iter().position(|object| mesh.is_used_at(object.span))? as u32;
         let hit = scene_probe.hits().filter(|(_, hit)| mesh.is_used_at(scene_probe.object_span(hit.object))).count();
         let most = hit * 2 > scene_probe.hits().count();
-        let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scene_probe.object(index)))
+        let by_file = mesh.odd_normals.is_some();
+        let message = match by_file {
+            true => format!("the normals of the {} point inwards, against its triangles", scene_probe.object(index)),
+            false => format!("the {} is closed, but inside out", scene_probe.object(index)),
+        };
+        let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(index))
             .effect(
                 "programs that cull back faces show the inside of the mesh; as glass, the mesh refracts light the \
                  wrong way",
             )
-            .help("order the vertices of the faces counter-clockwise, as seen from outside");
+            .help(match by_file {
+                true => "negate the normals of the vertices",
+                false => "order the vertices of the faces counter-clockwise, as seen from outside",
+            });
         // Modelling programs often leave small inverted pieces that are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))

@@ -69,6 +69,11 @@ const EMPTY_PICTURE_CODES: [&str; 7] =
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
+    (
+        "bad-place",
+        &["camera-away", "camera-inside", "all-missed", "unseen", "light-blocked", "lamp-turned", "too-dark"],
+    ),
+    ("black-light", &["same-color", "too-dark", "one-color"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
     ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),

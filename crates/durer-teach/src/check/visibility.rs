@@ -2,7 +2,7 @@
 
 use super::probes::ProbeGrid;
 use super::shapes::triangle;
-use durer_render::world::{Geometry, Object};
+use durer_render::world::{Geometry, Object, World};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
@@ -13,6 +13,8 @@ pub(super) enum Visibility {
     Visible,
     /// The object projects into the picture, but this other object hides it.
     Hidden(u32),
+    /// The camera looks at the back of the object, which the material hides.
+    TurnedAway,
     /// The object is outside the picture.
     Outside,
     /// The object is unbounded or empty, and no probe hit it.
@@ -45,13 +47,37 @@ fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     }
     let mut sight = Visibility::Outside;
     for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
-        match grid.world().closest(&ray, &mut ()) {
+        let seen = past_hidden_backs(grid.world(), ray);
+        match grid.world().closest(&seen, &mut ()) {
             Some(hit) if hit.object == number => return Visibility::Visible,
+            _ if is_first(grid.world(), &ray, number) => return Visibility::TurnedAway,
             Some(hit) => sight = Visibility::Hidden(hit.object),
             None => {}
         }
     }
     sight
+}
+
+/// Returns true if a ray hits an object first, on its visible or on its hidden side.
+fn is_first(world: &World, ray: &Ray, number: u32) -> bool {
+    world.hides_backs() && world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
+}
+
+/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it. Path tracing
+/// ignores such backs.
+pub(super) fn past_hidden_backs(world: &World, mut ray: Ray) -> Ray {
+    // The loop limits the number of layers.
+    for _ in 0..64 {
+        if !world.hides_backs() {
+            break;
+        }
+        let Some(hit) = world.closest(&ray, &mut ()) else { break };
+        if !world.is_hidden(ray.dir, &world.interaction(ray, hit)) {
+            break;
+        }
+        ray.t_min = hit.t;
+    }
+    ray
 }
 
 /// Returns the camera rays to a point. The list is empty if the point projects outside the picture.

@@ -42,6 +42,19 @@ fn material_names_are_equivalent_to_numbers() {
 }
 
 #[test]
+fn names_of_fields_can_be_names() {
+    for name in ["base", "top", "dome", "radius"] {
+        let materials = MATERIALS.replace("red", name);
+        let text = format!("{HEAD}{materials}Group {{ MaterialIndex {name} Sphere {{ center 0 0 0 radius 1 }} }}");
+        let numbered = format!("{HEAD}{MATERIALS}Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}");
+        assert_eq!(clean(&text, Dialect::Durer), clean(&numbered, Dialect::Durer), "{name}");
+        let defined =
+            format!("define {name} Sphere {{ center 0 0 0 radius 1 }} Group {{ MaterialIndex 0 use {name} }}");
+        assert_eq!(ours(&defined).root.unwrap().objects.len(), 1, "{name}");
+    }
+}
+
+#[test]
 fn each_use_copies_the_defined_object() {
     let ball = "Sphere { center 1 2 3 radius 1 }";
     let scene = ours(&format!(
@@ -74,6 +87,10 @@ fn wrong_names_are_errors() {
         (
             "define Sphere Sphere { center 0 0 0 radius 1 }",
             "3:8 error: `Sphere` cannot be a name: it is a word of the language [Sphere]",
+        ),
+        (
+            "define use Sphere { center 0 0 0 radius 1 }",
+            "3:8 error: `use` cannot be a name: it is a word of the language [use]",
         ),
         ("define 3 Sphere { center 0 0 0 radius 1 }", "3:8 error: `3` cannot be a name: it is a number [3]"),
         // Cycles are impossible because an object cannot be used inside its own definition.
