@@ -314,7 +314,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
         match self.options.dialect {
             Dialect::F23 => matches!(word.as_str(), "Camera" | "Background" | "Materials" | "Scene"),
-            _ => is_section(&word) && word != "Group",
+            // Groups are also allowed within groups, but not within the other sections.
+            _ if word == "Group" => self.blocks.first().is_some_and(|&top| {
+                let top = self.text(top);
+                is_section(&top) && top != "Group"
+            }),
+            _ => is_section(&word),
         }
     }
 }
