@@ -6,6 +6,7 @@ import "./style/model.css";
 import "./style/editor.css";
 import "./style/explain.css";
 import "./style/lecture.css";
+import "./style/slides.css";
 import "./style/figures.css";
 import "./style/mistakes.css";
 import { render } from "preact";

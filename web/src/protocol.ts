@@ -909,6 +909,10 @@ t_max: number | null,
  */
 object: number | null, 
 /**
+ * Lines that derive the numbers of the term from the fields of the scene.
+ */
+origins: Array<string>, 
+/**
  * Terms that sum to this one.
  */
 terms: Array<Term>, };
@@ -1229,3 +1233,41 @@ required: boolean,
  * Meaning and unit.
  */
 doc: string, };
+
+export type DrawnScene = { 
+/**
+ * Outlines of the objects.
+ */
+outlines: Array<Outline>, 
+/**
+ * Marks for the lights.
+ */
+lights: Array<LightMarker>, 
+/**
+ * The camera.
+ */
+camera: CameraState, };
+
+export type TermCast = { 
+/**
+ * Path of the term in the tree, such as `0.2.1`.
+ */
+path: string, 
+/**
+ * The tests.
+ */
+cast: CastResult, };
+
+export type ExplainedSample = { 
+/**
+ * The pixel, and the tree of this sample.
+ */
+explanation: PixelExplanation, 
+/**
+ * Pixel to which the sample belongs.
+ */
+of: [number, number], 
+/**
+ * Tests of the rays in the tree; empty if the page has no room for those of this sample.
+ */
+casts: Array<TermCast>, };

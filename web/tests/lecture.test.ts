@@ -67,6 +67,7 @@ function term(title: string, role: string | null, terms: Term[] = []): Term {
     ray: null,
     t_max: null,
     object: null,
+    origins: [],
     terms,
   } as Term;
 }

@@ -100,8 +100,9 @@ const USAGE: &str = "Commands:
   cargo xtask sheet [--samples 32] [--front] [--only TEXT] [--keep FOLDER]
       Contact sheets of the sample models, rendered with default options (or --front), beside their reference pictures.
   cargo xtask page [--check | --measure]
-      Build the page of `durer live` from web/ (Node and npm) into web/dist, which is committed. --check: fail if web/dist
-      is stale. --measure: frames per second, random edits, memory, hostile clients (needs Chromium).
+      Build the page of `durer live` and the reports from web/ (Node and npm) into web/dist and web/dist-report, which are
+      committed. --check: fail if they are stale. --measure: frames per second, random edits, memory, hostile clients
+      (needs Chromium).
   cargo xtask playground -o FOLDER
       Build the page of `durer live` as static files, over WebAssembly. Needs the target wasm32-unknown-unknown, and
       wasm-bindgen in the version of crates/durer-wasm/Cargo.toml.

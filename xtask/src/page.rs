@@ -1,4 +1,4 @@
-//! Builds the web page of `durer live`, also as static files over WebAssembly.
+//! Builds the web page of `durer live`, also as static files over WebAssembly, and the reports.
 
 use crate::{cargo, root, value};
 use anyhow::{Context, Result, bail};
@@ -8,31 +8,47 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Builds the page into `web/dist`. With `--check`, only checks that `web/dist` is up to date.
+/// The bundles: the folder in `web` that contains each, and the configuration that builds it.
+const BUNDLES: [(&str, &str); 2] = [("dist", "vite.config.ts"), ("dist-report", "vite.report.config.ts")];
+
+/// Builds the page into `web/dist` and the reports into `web/dist-report`. With `--check`, only
+/// checks that they are up to date.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let web = root()?.join("web");
     if arguments.iter().any(|argument| argument == "--measure") {
         return measure(&web);
     }
-    if !arguments.iter().any(|argument| argument == "--check") {
-        build(&web, &web.join("dist"))?;
-        return Ok(ExitCode::SUCCESS);
+    install(&web)?;
+    call(Command::new("npx").args(["tsc", "--noEmit"]).current_dir(&web))?;
+    let check = arguments.iter().any(|argument| argument == "--check");
+    let mut code = ExitCode::SUCCESS;
+    for (folder, config) in BUNDLES {
+        if !check {
+            build(&web, config, &web.join(folder))?;
+        } else if !is_fresh(&web, folder, config)? {
+            code = ExitCode::FAILURE;
+        }
     }
-    let fresh = web.join("node_modules/.durer-check");
-    build(&web, &fresh)?;
-    let (there, wanted) = (files(&web.join("dist"))?, files(&fresh)?);
+    Ok(code)
+}
+
+/// Returns true if a bundle is what the sources build. Otherwise, prints the stale files.
+fn is_fresh(web: &Path, folder: &str, config: &str) -> Result<bool> {
+    let fresh = web.join("node_modules/.durer-check").join(folder);
+    build(web, config, &fresh)?;
+    let (there, wanted) = (files(&web.join(folder))?, files(&fresh)?);
     let stale: Vec<&String> = wanted
         .keys()
         .chain(there.keys().filter(|name| !wanted.contains_key(*name)))
         .filter(|name| there.get(*name) != wanted.get(*name))
         .collect();
     if stale.is_empty() {
-        println!("web/dist matches the sources: {} files", wanted.len());
-        return Ok(ExitCode::SUCCESS);
+        println!("web/{folder} matches the sources: {} files", wanted.len());
+        return Ok(true);
     }
-    stale.iter().for_each(|name| println!("web/dist/{name} is stale"));
+    stale.iter().for_each(|name| println!("web/{folder}/{name} is stale"));
     println!("run `cargo xtask page`");
-    Ok(ExitCode::FAILURE)
+    Ok(false)
 }
 
 /// Tests the page in Chromium with a small and a large scene. Measures frames per second and the
@@ -77,10 +93,9 @@ fn install(web: &Path) -> Result<()> {
     call(Command::new("npm").args(["install", "--no-audit", "--no-fund"]).current_dir(web))
 }
 
-fn build(web: &Path, into: &Path) -> Result<()> {
-    install(web)?;
-    call(Command::new("npx").args(["tsc", "--noEmit"]).current_dir(web))?;
-    call(Command::new("npx").args(["vite", "build", "--emptyOutDir", "--outDir"]).arg(into).current_dir(web))
+fn build(web: &Path, config: &str, into: &Path) -> Result<()> {
+    let arguments = ["vite", "build", "--config", config, "--emptyOutDir", "--outDir"];
+    call(Command::new("npx").args(arguments).arg(into).current_dir(web))
 }
 
 /// Returns the names and contents of the files in a folder.

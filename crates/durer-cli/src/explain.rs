@@ -116,7 +116,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let transfer = args.render.display.transfer();
     if let (Some(destination), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(report::explanation(&subject, &names), sample, &compiled.world, picture, transfer)?;
+        let page = page::page(&args.render.scene, &compiled, &job, &subject, sample, picture, transfer)?;
         output::save(&[(destination, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }

@@ -108,7 +108,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
 
 /// Returns the names and contents of the files to write.
 fn files(lesson: Lesson) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let mut files = vec![(PAGE.to_string(), page::page(&lesson).into_bytes())];
+    let mut files = vec![(PAGE.to_string(), page::page(&lesson)?.into_bytes())];
     files.push((TEXT.to_string(), markdown::text(&lesson).into_bytes()));
     if lesson.shows_ours() {
         files.push((OWN_SCENE_NAME.to_string(), OWN_SCENE.into()));

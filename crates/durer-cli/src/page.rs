@@ -1,13 +1,20 @@
-//! Common parts of the HTML pages. The pages contain their pictures and data and need no network
-//! access.
+//! The HTML reports. A report is one file, built from `web/src/report`, with its data. It needs no
+//! network access.
+
+mod types;
 
 use crate::failure::Failure;
 use crate::output::{encode, format};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use durer::image::{Layer, Transfer};
-use serde_json::Value;
 use std::path::Path;
+pub use types::*;
+
+/// The report without data.
+const PAGE: &str = include_str!("../../../web/dist-report/report.html");
+/// Marks the place of the data in the report.
+const PLACE: &str = "@DATA@";
 
 /// Encodes a picture as PNG.
 pub fn png(layer: Layer, transfer: Transfer) -> Result<Vec<u8>, Failure> {
@@ -19,13 +26,20 @@ pub fn uri(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
-/// Style and script shared by all pages.
-const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+/// Returns a report with its data.
+pub fn with_data(report: &Report) -> Result<String, Failure> {
+    // Escape `<` so that the data cannot end its element.
+    let data = serde_json::to_string(report)?.replace('<', "\\u003c");
+    Ok(PAGE.replacen(PLACE, &data, 1))
+}
 
-/// Fills in the placeholders `@STYLE@`, `@SCRIPT@` and `@DATA@` of a template.
-pub fn with_data(page: &str, data: &Value) -> String {
-    let page = page.replacen("@STYLE@", STYLE, 1).replacen("@SCRIPT@", SCRIPT, 1);
-    // Escape `<` so that the data cannot end the script element.
-    page.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn report_has_one_place_for_data_and_loads_nothing() {
+        assert_eq!(PAGE.matches(PLACE).count(), 1);
+        assert!(PAGE.contains("default-src 'none'") && !PAGE.contains("src=\"") && !PAGE.contains("<link"));
+    }
 }

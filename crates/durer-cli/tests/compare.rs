@@ -268,23 +268,36 @@ fn border_pixels_and_missing_shadows_are_recognised() {
 
 /// Script that clicks through the page and records what the page shows.
 const CLICKS: &str = r##"
-const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
-const choose = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
-see(`rows ${document.querySelectorAll("#pairs tr.pick").length}`);
-see(`natural ${$("over").complete && $("over").naturalWidth}x${$("over").naturalHeight}`);
-for (const mode of ["slider", "reference", "picture", "difference", "blink"]) choose(mode);
-choose("heat");
-see(`heat ${$("over").src === pair.images[2]}`);
-choose("slider");
-mouse($("stage"), "pointerdown", 0.25, 0.1);
-mouse($("stage"), "pointermove", 0.75, 0.1);
-see(`slid ${getComputedStyle($("over")).clipPath}; ${$("at").textContent}`);
-document.querySelector("#where .place").click();
-see(`box ${!$("box").hidden} ${$("box").style.left}`);
-document.querySelectorAll("#pairs tr.pick")[0].click();
-see(`name ${$("name").textContent}`);
-window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
-setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); done(); }, 700);
+(async () => {
+  await wait();
+  const over = () => document.querySelectorAll(".wipe img")[1];
+  const look = () => { const { visibility, clipPath, mixBlendMode } = getComputedStyle(over()); return `${visibility} ${clipPath} ${mixBlendMode}`; };
+  const choose = async mode => { find(`button[data-mode=${mode}]`).click(); await wait(); see(`${mode}: ${look()}`); };
+  see(`rows ${count(".pairs tbody .link")}`);
+  see(`natural ${over().complete && over().naturalWidth}x${over().naturalHeight}`);
+  const picture = over().src;
+  for (const mode of ["slider", "reference", "picture", "difference", "blink"]) await choose(mode);
+  await choose("heat");
+  see(`heat ${over().src !== picture && over().src.startsWith("data:image/png")}`);
+  await choose("slider");
+  mouse(find(".wipe"), "pointerdown", 0.25, 0.1);
+  mouse(find(".wipe"), "pointermove", 0.75, 0.1);
+  await wait();
+  see(`slid ${getComputedStyle(over()).clipPath}; ${find(".below output").textContent}`);
+  find(".regions .place").click();
+  await wait();
+  see(`box ${find(".wipe .box").style.left}`);
+  const zoom = find(".zoom-choice select");
+  zoom.value = "8";
+  zoom.dispatchEvent(new Event("change", { bubbles: true }));
+  await wait();
+  see(`zoomed ${find(".wipe").offsetWidth}`);
+  document.querySelectorAll(".pairs tbody .link")[0].click();
+  await wait();
+  see(`name ${find(".finding h2").textContent}`);
+  window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
+  setTimeout(() => { see(`blinked ${getComputedStyle(over()).visibility}`); done(); }, 700);
+})();
 "##;
 
 /// The report of a class groups equal mistakes, and its table can be saved.
@@ -302,21 +315,31 @@ fn class_report_is_a_matrix_of_students_and_pictures() {
     }
     folder.expect_exit(1, "compare ref class --scene . --report class.html");
     let clicks = r##"
-see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
-see(`same ${document.querySelector(".group").textContent}`);
-see(`csv ${window.table().split("\r\n").length}`);
-see(`named ${window.table().includes('"no-shadows"')}`);
-document.querySelector("#matrix figure").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
-see(`picked ${$("name").textContent}`);
-see(`narrow ${document.documentElement.scrollWidth <= document.documentElement.clientWidth}`);
-done();
+(async () => {
+  await wait();
+  see(`cells ${count(".matrix button.cell img")}`);
+  see(`same ${find(".groups li").textContent}`);
+  const { csv } = JSON.parse(find("#report").textContent);
+  see(`csv ${csv.split("\r\n").length} ${csv.includes(",no-shadows,")}`);
+  const link = [];
+  HTMLAnchorElement.prototype.click = function () { link.push(this.download); };
+  [...document.querySelectorAll("button")].find(button => button.textContent === "Save as CSV").click();
+  see(`saved ${link}`);
+  find(".matrix button.cell").click();
+  await wait();
+  see(`picked ${find(".finding h2").textContent}`);
+  see(`code ${count(".code-line.right")} ${count(".code-line.wrong")}`);
+  see(`narrow ${document.documentElement.scrollWidth <= document.documentElement.clientWidth}`);
+  done();
+})();
 "##;
     let wanted = [
         "cells 3",
-        "same ada, bob - scene.png: there are no shadows",
-        "csv 5",
-        "named true",
-        "picked ada/scene.png",
+        "same there are no shadowsscene.png: ada, bob",
+        "csv 5 true",
+        "saved class.csv",
+        "picked ada/scene.png different",
+        "code 1 1",
         "narrow true",
     ];
     sees(&folder, "class.html", clicks, &wanted);
@@ -342,8 +365,9 @@ fn page_works_in_a_browser_without_network() {
         "difference: visible none difference",
         "heat true",
         "slid inset(0px 0px 0px 75%); pixel 45,",
-        "box true 51.6",
-        "different",
+        "box 51.6",
+        "zoomed 480",
+        "name &lt;script&gt;&lt;b&gt;.ppm different",
         "blinked hidden",
     ];
     sees(&folder, "report.html", CLICKS, &wanted);

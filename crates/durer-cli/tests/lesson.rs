@@ -93,29 +93,53 @@ fn invalid_arguments_leave_no_files() {
     }
 }
 
-/// Script that moves the slider and drags across the picture.
+/// Script that visits all steps, moves the slider and drags across the picture.
 const CLICKS: &str = r##"
-see(`steps ${document.querySelectorAll("section").length - 1} links ${document.querySelectorAll("nav a").length}`);
-const images = [...document.querySelectorAll("img")];
-const stage = document.querySelector(".stage"), over = stage.querySelectorAll("img")[1], slider = stage.parentElement.querySelector("input");
-const clip = () => getComputedStyle(over).clipPath;
-see(`half ${clip()}`);
-slider.value = 20;
-slider.dispatchEvent(new Event("input"));
-see(`slid ${clip()}`);
-mouse(stage, "pointermove", 0.9, 0.5, 0);
-see(`unheld ${clip()}`);
-mouse(stage, "pointerdown", 0.5, 0.5);
-mouse(stage, "pointermove", 0.75, 0.5);
-see(`dragged ${clip()} ${slider.value}`);
-see(`plan ${document.querySelectorAll(".plan line").length > 5}`);
-see(`equation ${document.querySelector(".equations sub").textContent}`);
-document.querySelectorAll("nav a")[4].click();
-see(`at ${location.hash}`);
-setTimeout(() => {
-  see(`pictures ${images.length > 20} ${images.every(image => image.complete && image.naturalWidth === 40)}`);
+(async () => {
+  await wait();
+  see(`heading ${document.title}`);
+  const links = [...document.querySelectorAll(".contents a[href*=step]")];
+  const images = [];
+  let plans = 0, subscripts = 0, wipes = 0;
+  for (const link of links) {
+    link.click();
+    await wait();
+    images.push(...[...document.querySelectorAll("img")].map(image => image.src));
+    plans += count(".plan line") > 5;
+    subscripts += count(".equation sub");
+    wipes += count(".wipe");
+  }
+  see(`steps ${links.length} with ${wipes} sliders`);
+  see(`plan ${plans > 0} subscripts ${subscripts > 5} pictures ${images.length > 20}`);
+  links[4].click();
+  await wait();
+  see(`at ${location.hash}`);
+  const stage = find(".wipe"), clip = () => getComputedStyle(stage.querySelectorAll("img")[1]).clipPath;
+  const slider = find(".shot input[type=range]");
+  see(`half ${clip()}`);
+  slider.value = 20;
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  await wait();
+  see(`slid ${clip()}`);
+  mouse(stage, "pointermove", 0.9, 0.5, 0);
+  await wait();
+  see(`unheld ${clip()}`);
+  mouse(stage, "pointerdown", 0.5, 0.5);
+  mouse(stage, "pointermove", 0.75, 0.5);
+  await wait();
+  see(`dragged ${clip()} ${slider.value}`);
+  stage.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true }));
+  await wait();
+  see(`key ${slider.value} ${location.hash}`);
+  window.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight" }));
+  await wait();
+  see(`next ${location.hash}`);
+  see(`sizes ${[...document.querySelectorAll("img")].every(image => image.complete && image.naturalWidth === 40)}`);
+  document.querySelectorAll(".contents a").item(links.length).click();
+  await wait();
+  see(`built-in ${find(".source").textContent.includes("Camera")}`);
   done();
-}, 500);
+})();
 "##;
 
 #[test]
@@ -128,18 +152,22 @@ fn page_works_in_a_browser_without_network() {
     folder.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));
     let text = String::from_utf8(folder.bytes("out/lesson.md")).unwrap();
     assert!(text.contains("# &lt;b>&#93;(a).txt") && !text.contains("](a)"), "{text}");
-    let steps = names(&folder.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;
-    let steps = format!("steps {steps} links {steps}");
+    let changes = names(&folder.path("out")).iter().filter(|name| name.ends_with("-change.png")).count();
+    let steps = format!("steps {} with {changes} sliders", changes + 4);
     let wanted = [
+        // The browser shows the title as text.
+        "heading &lt;b&gt;](a).txt, in the order of the lecture",
         steps.as_str(),
+        "plan true subscripts true pictures true",
+        "at #/lesson/step-5",
         "half inset(0px 0px 0px 50%)",
         "slid inset(0px 0px 0px 20%)",
         "unheld inset(0px 0px 0px 20%)",
         "dragged inset(0px 0px 0px 75%) 75",
-        "plan true",
-        "equation a",
-        "at #step-5",
-        "pictures true true",
+        "key 73 #/lesson/step-5",
+        "next #/lesson/step-6",
+        "sizes true",
+        "built-in true",
     ];
     sees(&folder, "out/index.html", CLICKS, &wanted);
 }

@@ -109,14 +109,13 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "20 photographs, ",
         "button first: choose a photograph first, at -1",
         "strip: 03.png: sees ",
-        "opacity 0.95, marked true | fills true",
+        "opacity 0.95, at 3 | fills true",
         "is left true",
         "another true",
-        "point in several true, note true",
+        "point in several true",
         "all: 20 photographs, ",
-        "all inside true",
-        "one plane true",
         "turned true",
+        "keys true",
     ];
     browser::sees(&folder, "tour.html", include_str!("common/walk.js"), &walked);
     folder.expect_failure(

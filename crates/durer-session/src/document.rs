@@ -153,18 +153,42 @@ impl CompiledDocument {
         check(&subject, &self.diagnostics).iter().map(|found| finding(&found.diagnostic, &self.files)).collect()
     }
 
+    pub fn named(&self) -> NamedScene<'_> {
+        NamedScene(self.names())
+    }
+
     /// Returns the keyword and the line of a light.
     pub fn light(&self, number: usize) -> String {
-        let light = self.loaded.scene.lights.iter().flatten().nth(number);
-        match light.and_then(|light| Some((light.value.own_keyword(), self.place(light.span)?.line))) {
-            Some((keyword, line)) => format!("{keyword} of line {line}"),
-            None => self.names().light(number),
-        }
+        self.named().light(number)
     }
 
     /// Returns the position of a span if it is in the scene file itself.
     pub fn place(&self, span: Span) -> Option<TextPosition> {
         place(&self.files, span)
+    }
+}
+
+/// The names of a compiled scene, and the positions of its statements in the scene file.
+#[derive(Clone, Copy)]
+pub(crate) struct NamedScene<'a>(pub SceneNames<'a>);
+
+impl NamedScene<'_> {
+    pub fn world(&self) -> &World {
+        self.0.world
+    }
+
+    /// Returns the keyword and the line of a light.
+    pub fn light(&self, number: usize) -> String {
+        let light = self.0.scene.lights.iter().flatten().nth(number);
+        match light.and_then(|light| Some((light.value.own_keyword(), self.place(light.span)?.line))) {
+            Some((keyword, line)) => format!("{keyword} of line {line}"),
+            None => self.0.light(number),
+        }
+    }
+
+    /// Returns the position of a span if it is in the scene file itself.
+    pub fn place(&self, span: Span) -> Option<TextPosition> {
+        place(self.0.files, span)
     }
 }
 

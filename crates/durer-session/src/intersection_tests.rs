@@ -1,7 +1,7 @@
 //! Intersection tests between a ray and each object, with the reason why an object is not the
 //! closest hit.
 
-use crate::document::CompiledDocument;
+use crate::document::NamedScene;
 use crate::protocol::{CastHit, CastResult, FormulaRow, ObjectTest, Verdict};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::math::{Line, Ray, Ray64, Vec2, Vec3};
@@ -10,11 +10,11 @@ use durer::world::{Geometry, Hit, Object};
 use glam::DVec3;
 
 /// Maximum number of objects that are listed.
-const MAX_TESTS: usize = 200;
+pub(crate) const MAX_TESTS: usize = 200;
 
 /// Intersects a ray in world space with every object and reports the result for each object.
-pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastResult {
-    let world = &compiled.world;
+pub(crate) fn cast(scene: NamedScene, ray: &Ray) -> CastResult {
+    let world = scene.world();
     let ray64 = Ray64::from(*ray);
     let first = world.closest(&ray64, &mut ());
     let objects = world.objects();
@@ -22,10 +22,10 @@ pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastResult {
         .iter()
         .enumerate()
         .take(MAX_TESTS)
-        .map(|(i, object)| test(compiled, i as u32, object, &ray64, first.as_ref()))
+        .map(|(i, object)| test(scene, i as u32, object, &ray64, first.as_ref()))
         .collect();
     if let Some(hit) = first.filter(|hit| hit.object as usize >= MAX_TESTS) {
-        tests.push(test(compiled, hit.object, &objects[hit.object as usize], &ray64, first.as_ref()));
+        tests.push(test(scene, hit.object, &objects[hit.object as usize], &ray64, first.as_ref()));
     }
     let hit = first.map(|hit| {
         let at = world.interaction(&ray64, hit);
@@ -44,8 +44,8 @@ pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastResult {
     CastResult { origin: ray.origin.into(), direction: ray.dir.into(), tests, left_out, hit }
 }
 
-fn test(compiled: &CompiledDocument, number: u32, object: &Object, ray: &Ray64, first: Option<&Hit>) -> ObjectTest {
-    let world = &compiled.world;
+fn test(scene: NamedScene, number: u32, object: &Object, ray: &Ray64, first: Option<&Hit>) -> ObjectTest {
+    let world = scene.world();
     let own = world.hit_of(number, ray);
     let whole = Ray64 { rounded: Ray { t_min: f32::NEG_INFINITY, t_max: f32::INFINITY, ..ray.rounded }, ..*ray };
     let anywhere = own.or_else(|| world.hit_of(number, &whole));
@@ -67,8 +67,8 @@ fn test(compiled: &CompiledDocument, number: u32, object: &Object, ray: &Ray64, 
     };
     let mut account = ObjectTest {
         object: number,
-        name: compiled.names().short_object(number),
-        place: compiled.place(object.span),
+        name: scene.0.short_object(number),
+        place: scene.place(object.span),
         verdict,
         why,
         t: anywhere.map(|hit| hit.t),

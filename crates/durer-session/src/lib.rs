@@ -3,10 +3,11 @@
 //!
 //! [`Session`] does the work, and [`Host`] contains several sessions. Both exchange the messages of
 //! [`protocol`] and are independent of sockets and browsers. `durer-live` and `durer-wasm`
-//! transport the messages.
+//! transport the messages. [`explained_samples`] explains a pixel for a page without a session.
 
 mod display;
 mod document;
+mod explained;
 mod export;
 mod fields;
 mod host;
@@ -24,5 +25,6 @@ mod terms;
 mod traversal;
 mod viewer;
 
+pub use explained::{DrawnScene, ExplainedSample, TermCast, drawn_scene, explained_samples};
 pub use host::Host;
 pub use session::{Clock, Session, SessionFiles};

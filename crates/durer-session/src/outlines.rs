@@ -1,6 +1,6 @@
 //! Line drawings of a scene for the 3D view of the web page.
 
-use crate::document::CompiledDocument;
+use crate::document::NamedScene;
 use crate::protocol::{LightMarker, Outline};
 use durer::math::Vec3;
 use durer::render::explain::SceneNames;
@@ -18,9 +18,9 @@ pub(crate) fn outlines(names: &SceneNames) -> Vec<Outline> {
 }
 
 /// Returns markers for the lights with their names.
-pub(crate) fn light_markers(compiled: &CompiledDocument) -> Vec<LightMarker> {
-    let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
+pub(crate) fn light_markers(scene: NamedScene) -> Vec<LightMarker> {
+    let marks = light_marks(scene.world()).take(MAX_LIGHTS).enumerate();
     marks
-        .map(|(i, LightMark { at, is_far })| LightMarker { at: at.into(), far: is_far, name: compiled.light(i) })
+        .map(|(i, LightMark { at, is_far })| LightMarker { at: at.into(), far: is_far, name: scene.light(i) })
         .collect()
 }

@@ -14,7 +14,7 @@ use crate::{intersection_tests, language, mistakes, model, terms, traversal};
 use durer::camera::{Camera, PerspectiveCamera, Projection};
 use durer::describe::DescribedKind;
 use durer::film::aov::AOVS;
-use durer::image::Tone;
+use durer::image::{Tone, Transfer};
 use durer::integrator::IntegratorKind;
 use durer::math::{Ray, Vec3};
 use durer::render::Job;
@@ -253,12 +253,12 @@ impl Session {
             }
             Request::Cast { origin, direction, t_max } => {
                 let ray = ray_of(origin, direction, t_max)?;
-                let cast = intersection_tests::cast(self.compiled()?, &ray);
+                let cast = intersection_tests::cast(self.compiled()?.named(), &ray);
                 send(Event::Cast { cast });
             }
             Request::Outlines => {
                 let compiled = self.compiled()?;
-                send(Event::Outlines { outlines: outlines(&compiled.names()), lamps: light_markers(compiled) });
+                send(Event::Outlines { outlines: outlines(&compiled.names()), lamps: light_markers(compiled.named()) });
             }
             Request::Language => send(Event::Language { words: language::words() }),
             Request::Export { name } => {
@@ -474,7 +474,7 @@ impl Session {
         let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let job = self.viewer.job_of(compiled, "color")?;
         let explanation = explain_samples(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
-        Ok(Event::Explained { pixel: terms::explain(compiled, &job, &explanation, sample) })
+        Ok(Event::Explained { pixel: terms::explain(compiled.named(), &job, &explanation, sample, Transfer::Srgb) })
     }
 
     /// Converts a model to text with asset files. After that, the session edits the text.

@@ -1,6 +1,6 @@
 //! Explanation of the radiance of a pixel as a tree of terms, each with its formula and numbers.
 
-use crate::document::CompiledDocument;
+use crate::document::NamedScene;
 use crate::protocol::{FormulaRow, PixelExplanation, Segment, SegmentKind, Term};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::diag::Span;
@@ -9,16 +9,18 @@ use durer::integrator::trace::{HitRecord, RayKind, RayRecord, Shadow, TermKind, 
 use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, LUMINANCE, Vec2, Vec3};
 use durer::render::Job;
-use durer::render::explain::{Explanation, SceneNames};
+use durer::render::explain::Explanation;
+use durer::world::World;
 use durer::world::emitters::LightId;
 
 /// Explains a pixel through one of its samples. If `sample` is `None`, the sample with the largest
 /// contribution is used.
 pub(crate) fn explain(
-    compiled: &CompiledDocument,
+    scene: NamedScene,
     job: &Job,
     explanation: &Explanation,
     sample: Option<u32>,
+    transfer: Transfer,
 ) -> PixelExplanation {
     let chosen = sample.map_or(explanation.max_weight_index(), |sample| sample as usize);
     let chosen = chosen.min(explanation.samples.len().saturating_sub(1));
@@ -27,15 +29,8 @@ pub(crate) fn explain(
     let light = sample.and_then(|sample| sample.light.as_ref());
     let at = sample.map_or(Vec2::ZERO, |sample| sample.place);
     let tree = light.map(|light| {
-        let formatter = TermFormatter {
-            compiled,
-            names: compiled.names(),
-            tree: light,
-            pixel_luminance: light.sum().dot(LUMINANCE),
-        };
-        let one = TermValue::Color(Color::ONE);
-        let mut term = formatter.term(&light.root, one, &TermContext::default());
-        let mut rows = camera_rows(compiled, job, at);
+        let mut term = tree_terms(scene, light, transfer);
+        let mut rows = camera_rows(scene.world(), job, at);
         rows.append(&mut term.rows);
         term.rows = rows;
         term
@@ -44,7 +39,7 @@ pub(crate) fn explain(
         x: explanation.x,
         y: explanation.y,
         color: explanation.color.into(),
-        bytes: Transfer::Srgb.encode_pixel(explanation.color),
+        bytes: transfer.encode_pixel(explanation.color),
         samples: explanation.samples.len() as u32,
         sample: chosen as u32,
         at: at.into(),
@@ -53,9 +48,14 @@ pub(crate) fn explain(
     }
 }
 
+/// Returns the terms of the light along a ray.
+pub(crate) fn tree_terms(scene: NamedScene, tree: &Tree, transfer: Transfer) -> Term {
+    let formatter = TermFormatter { scene, tree, pixel_luminance: tree.sum().dot(LUMINANCE), transfer };
+    formatter.term(&tree.root, TermValue::Color(Color::ONE), &TermContext::default())
+}
+
 /// Returns the formulas of the camera ray through a position in the picture.
-fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<FormulaRow> {
-    let world = &compiled.world;
+fn camera_rows(world: &World, job: &Job, place: Vec2) -> Vec<FormulaRow> {
     let raster = durer::render::raster(world, job.width, job.height);
     let (point, frame) = (raster.point(place), world.camera_frame());
     let mut rows = vec![FormulaRow {
@@ -87,11 +87,12 @@ struct TermContext {
 
 /// Converter from the trace of a pixel sample to the tree of [`Term`]s that the page shows.
 struct TermFormatter<'a> {
-    compiled: &'a CompiledDocument,
-    names: SceneNames<'a>,
+    scene: NamedScene<'a>,
     tree: &'a Tree,
     /// Luminance of the pixel.
     pixel_luminance: f32,
+    /// Transfer curve of eight-bit colours.
+    transfer: Transfer,
 }
 
 impl TermFormatter<'_> {
@@ -114,13 +115,14 @@ impl TermFormatter<'_> {
             value: value.into(),
             adds: adds.into(),
             share: if self.pixel_luminance > 0.0 { adds.dot(LUMINANCE) / self.pixel_luminance } else { 0.0 },
-            swatch: Transfer::Srgb.encode_pixel(value),
-            place: self.span(node).and_then(|span| self.compiled.place(span)),
+            swatch: self.transfer.encode_pixel(value),
+            place: self.span(node).and_then(|span| self.scene.place(span)),
             segment: self.segment(node),
             normal: hit_of(node).map(|hit| [hit.position.into(), hit.n.into()]),
             ray: ray.map(|ray| [ray.origin.into(), ray.dir.into()]),
             t_max,
             object: hit_of(node).map(|hit| hit.object).or_else(|| blocker(node)),
+            origins: self.scene.0.origins(node, around.dir, around.n),
             terms,
         }
     }
@@ -145,16 +147,16 @@ impl TermFormatter<'_> {
                     RayKind::Scattered => "Scattered ray",
                 };
                 match hit {
-                    Some(hit) => format!("{ray} hits {}", self.names.short_object(hit.object)),
+                    Some(hit) => format!("{ray} hits {}", self.scene.0.short_object(hit.object)),
                     None => format!("{ray} hits nothing"),
                 }
             }
             TermKind::Sky => "Background".into(),
             TermKind::Ambient { .. } => "Ambient light".into(),
             TermKind::Light { light, shadow, .. } => {
-                let name = self.compiled.light(*light);
+                let name = self.scene.light(*light);
                 match shadow.as_ref().and_then(|shadow| shadow.blocker) {
-                    Some((object, _)) => format!("{name}, hidden by {}", self.names.short_object(object)),
+                    Some((object, _)) => format!("{name}, hidden by {}", self.scene.0.short_object(object)),
                     None => name,
                 }
             }
@@ -167,12 +169,12 @@ impl TermFormatter<'_> {
             TermKind::Emission { .. } => "Emission".into(),
             TermKind::Direct { light, shadow, .. } => {
                 let name = match light {
-                    LightId::Light(number) => self.compiled.light(*number as usize),
-                    LightId::Surface(object, _) => self.names.short_object(*object),
+                    LightId::Light(number) => self.scene.light(*number as usize),
+                    LightId::Surface(object, _) => self.scene.0.short_object(*object),
                     LightId::Environment => "the environment".into(),
                 };
                 match shadow.as_ref().and_then(|shadow| shadow.blocker) {
-                    Some((object, _)) => format!("Light of {name}, hidden by {}", self.names.short_object(object)),
+                    Some((object, _)) => format!("Light of {name}, hidden by {}", self.scene.0.short_object(object)),
                     None => format!("Light of {name}"),
                 }
             }
@@ -182,23 +184,23 @@ impl TermFormatter<'_> {
     }
 
     fn span(&self, node: &TraceNode) -> Option<Span> {
-        let world = self.names.world;
+        let world = self.scene.0.world;
         match &node.kind {
             TermKind::Ray { hit: Some(hit), .. } => world.objects().get(hit.object as usize).map(|object| object.span),
-            TermKind::Light { light, .. } => self.names.scene.lights.iter().flatten().nth(*light).map(|l| l.span),
+            TermKind::Light { light, .. } => self.scene.0.scene.lights.iter().flatten().nth(*light).map(|l| l.span),
             TermKind::Direct { light: LightId::Light(light), .. } => {
-                self.names.scene.lights.iter().flatten().nth(*light as usize).map(|light| light.span)
+                self.scene.0.scene.lights.iter().flatten().nth(*light as usize).map(|light| light.span)
             }
             TermKind::Direct { light: LightId::Surface(object, _), .. } => {
                 world.objects().get(*object as usize).map(|object| object.span)
             }
-            TermKind::Sky => Some(self.names.scene.background_span),
+            TermKind::Sky => Some(self.scene.0.scene.background_span),
             _ => None,
         }
     }
 
     fn segment(&self, node: &TraceNode) -> Option<Segment> {
-        let bounds = self.names.world.bounds();
+        let bounds = self.scene.0.world.bounds();
         let far = if bounds.is_empty() { 10.0 } else { bounds.size().length().max(1e-3) };
         match &node.kind {
             TermKind::Ray { from, ray, hit, .. } => {
@@ -239,13 +241,26 @@ impl TermFormatter<'_> {
                         rows.push(words("(u, v)", &format!("({}, {})", number(uv.x.into()), number(uv.y.into()))));
                     }
                     if hit.barycentric != Vec3::ZERO {
+                        rows.push(words("triangle", &hit.part.to_string()));
                         rows.push(vector_row("(α, β, γ)", "barycentric", "", hit.barycentric));
+                    }
+                    if let Some(local) = &hit.local {
+                        let text = format!("o = {}, d = {} in object space", vector(local.origin), vector(local.dir));
+                        rows.push(words("local", &text));
+                    }
+                    rows.push(words("material", &self.scene.0.material(hit.material)));
+                    if hit.from_behind {
+                        rows.push(words("seen", if hit.black { "from behind: black" } else { "from behind" }));
                     }
                 }
                 if let Some(bounce) = bounce {
                     rows.push(words("lobe", bounce.lobe));
+                    rows.push(row("chance", "probability of the lobe", "", bounce.probability.into()));
                     rows.push(row("p", "pdf of the direction", "", bounce.pdf.into()));
                     rows.push(row("q", "survival probability", "", bounce.survival.into()));
+                    if bounce.directions > 1 {
+                        rows.push(words("directions", &format!("one of {} with equal weights", bounce.directions)));
+                    }
                 }
                 rows.push(row("weight", "weight in the pixel", "", (*weight).into()));
             }
@@ -348,7 +363,7 @@ impl TermFormatter<'_> {
     fn shadow_row(&self, shadow: &Shadow) -> FormulaRow {
         match shadow.blocker {
             Some((object, t)) => {
-                let what = self.names.short_object(object);
+                let what = self.scene.0.short_object(object);
                 words("shadow ray", &format!("hits {what} at t = {}: shadow", number(t.into())))
             }
             None if shadow.share.equals(1.0) => words("shadow ray", "reaches the light"),

@@ -7,6 +7,7 @@ import { roles } from "./segments";
 import { Stepper } from "./stepper";
 import { Tests } from "./tests";
 import { Tree } from "./tree";
+import type { ExplainView } from "./view";
 
 /** Panel that explains the colour of a pixel. */
 export function Explain({ store }: { store: Store }) {
@@ -56,7 +57,8 @@ export function Explain({ store }: { store: Store }) {
   );
 }
 
-function Tab({ name, on, choose }: { name: string; on: boolean; choose(): void }) {
+/** Tab of a panel. */
+export function Tab({ name, on, choose }: { name: string; on: boolean; choose(): void }) {
   return (
     <button type="button" role="tab" class="tab" aria-selected={on} onClick={choose}>
       {name}
@@ -119,7 +121,8 @@ function Samples({ store }: { store: Store }) {
   );
 }
 
-function Legend({ store }: { store: Store }) {
+/** Colours of the rays in the view. */
+export function Legend({ store }: { store: ExplainView }) {
   const there = new Set<string>();
   const walk = (term: NonNullable<typeof store.pixel>["tree"]) => {
     if (term?.segment) there.add(term.segment.role);

@@ -1,8 +1,8 @@
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type DrawingSize, useDrawingSize } from "../ui/drawing-size";
-import { type Store, useStore } from "../viewer/store";
+import { useStore } from "../viewer/store";
 import { lines } from "./edges";
-import { frustum, points, roles, segments } from "./segments";
+import { frustum, points, roles, segments, termAt } from "./segments";
 import {
   add,
   type Eye,
@@ -16,9 +16,13 @@ import {
   sub,
   type Vec,
 } from "./space";
+import type { ExplainView } from "./view";
+
+/** Maximum number of lights that have names; more names would cover the drawing. */
+const mostNames = 6;
 
 /** 3D view of a pixel's rays, with the outlines of all objects. */
-export function RaysView({ store }: { store: Store }) {
+export function RaysView({ store }: { store: ExplainView }) {
   useStore(store);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [eye, setEye] = useState<Eye | null>(null);
@@ -78,7 +82,7 @@ export function RaysView({ store }: { store: Store }) {
       class="rays"
       tabIndex={0}
       role="img"
-      aria-label={label(store)}
+      aria-label={describe(store)}
       onPointerDown={(event) => {
         event.currentTarget.setPointerCapture(event.pointerId);
         drag.current = { x: event.clientX, y: event.clientY, moved: false };
@@ -119,14 +123,14 @@ export function RaysView({ store }: { store: Store }) {
   );
 }
 
-function label(store: Store): string {
+function describe(store: ExplainView): string {
   const all = segments(store.pixel);
   if (all.length === 0) return "Outlines of the scene.";
   return `The rays of the pixel in 3D: ${all.map(({ segment }) => roles[segment.role]).join(", ")}.`;
 }
 
 /** Returns a view from the side of the camera's view frustum. */
-function beside(store: Store): Eye {
+function beside(store: ExplainView): Eye {
   const { pixel, camera } = store;
   const projected = points(pixel, camera);
   if (!camera) return frameEye(projected, 0.8, 0.4);
@@ -145,7 +149,7 @@ function toLine(x: number, y: number, a: { x: number; y: number }, b: { x: numbe
   return Math.hypot(x - a.x - t * dx, y - a.y - t * dy);
 }
 
-function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: Store) {
+function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: ExplainView) {
   const context = canvas.getContext("2d");
   if (!context || size.width < 1) return;
   const ratio = size.unit * (window.devicePixelRatio || 1);
@@ -158,9 +162,8 @@ function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: St
   const style = getComputedStyle(canvas);
   const color = (name: string) => style.getPropertyValue(name);
   objects(context, view, store, color("--solid"), color("--accent"));
-  const { camera, head } = store;
+  const { camera, aspect } = store;
   if (camera) {
-    const aspect = head ? head.full_width / head.full_height : 1;
     const reach = camera.distance * 0.35;
     // The rays of other cameras do not fill a pyramid, so only their direction is drawn.
     const outline: [Vec, Vec][] = camera.projects
@@ -189,20 +192,26 @@ function paint(canvas: HTMLCanvasElement, eye: Eye, size: DrawingSize, store: St
     const projected = t === null ? null : view.point(end);
     if (projected) dot(context, projected.x, projected.y, 4.5, color("--ray-lit"));
   } else rays(context, view, store, color);
+  const isNamed = store.lights.length <= mostNames;
   for (const lamp of store.lights) {
     const at = view.point(lamp.at);
-    if (at) dot(context, at.x, at.y, 4, color("--ray-scattered"));
+    if (!at) continue;
+    dot(context, at.x, at.y, 4, color("--ray-scattered"));
+    if (isNamed) label(context, at, lamp.name, size.width, color);
   }
+  const at = camera && view.point(camera.eye);
+  // Below the eye, because the rays go up or ahead.
+  if (at) label(context, { x: at.x - 16, y: at.y + 22 }, "eye", size.width, color);
 }
 
 function objects(
   context: CanvasRenderingContext2D,
   view: Projector,
-  store: Store,
+  store: ExplainView,
   plain: string,
   strong: string,
 ) {
-  const term = focused(store);
+  const term = termAt(store.pixel, store.hovered ?? store.chosen);
   for (const { object, lines } of store.outlines) {
     const chosen = term?.object === object || store.marked === object;
     context.strokeStyle = chosen ? strong : plain;
@@ -222,17 +231,10 @@ function objects(
   context.globalAlpha = 1;
 }
 
-function focused(store: Store) {
-  const path = store.hovered ?? store.chosen;
-  let term = store.pixel?.tree ?? null;
-  for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
-  return term;
-}
-
 function rays(
   context: CanvasRenderingContext2D,
   view: Projector,
-  store: Store,
+  store: ExplainView,
   color: (name: string) => string,
 ) {
   const focus = store.hovered ?? store.chosen;
@@ -298,6 +300,25 @@ function arrow(
   context.lineTo(x + size * Math.cos(angle + 2.5), y + size * Math.sin(angle + 2.5));
   context.lineTo(x + size * Math.cos(angle - 2.5), y + size * Math.sin(angle - 2.5));
   context.fill();
+}
+
+/** Writes a name beside a point, on its left at the right edge of the view. */
+function label(
+  context: CanvasRenderingContext2D,
+  at: { x: number; y: number },
+  name: string,
+  width: number,
+  color: (name: string) => string,
+) {
+  context.font = `11.5px ${color("--font")}`;
+  const before = at.x + 12 + context.measureText(name).width > width;
+  context.textAlign = before ? "right" : "left";
+  context.lineWidth = 3;
+  context.strokeStyle = color("--paper");
+  context.fillStyle = color("--soft");
+  const [x, y] = [at.x + (before ? -9 : 9), at.y - 5];
+  context.strokeText(name, x, y);
+  context.fillText(name, x, y);
 }
 
 function dot(context: CanvasRenderingContext2D, x: number, y: number, radius: number, color: string) {

@@ -21,6 +21,13 @@ export function segments(pixel: PixelExplanation | null): { path: string; segmen
   );
 }
 
+/** Returns the term at a path such as `0.2.1` in the tree of a pixel. */
+export function termAt(pixel: PixelExplanation | null, path: string): Term | null {
+  let term = pixel?.tree ?? null;
+  for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
+  return term;
+}
+
 /** Names of the kinds of rays, for legends. */
 export const roles: Record<SegmentKind, string> = {
   camera: "camera ray",

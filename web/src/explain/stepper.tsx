@@ -7,6 +7,7 @@ import { Code, Player } from "./code";
 import { Scan } from "./scan";
 import { flatten } from "./segments";
 import { type Step, steps } from "./steps";
+import type { ExplainView } from "./view";
 
 /** Maximum number of rays that the step-by-step view follows. */
 const most = 24;
@@ -31,7 +32,7 @@ export function Stepper({ store }: { store: Store }) {
 }
 
 /** Shows the steps of the algorithm for one pixel. */
-function PixelSteps({ store }: { store: Store }) {
+export function PixelSteps({ store }: { store: ExplainView }) {
   const [all, setAll] = useState<Step[]>([]);
   const [at, setAt] = useState(0);
   const [plays, setPlays] = useState(false);
@@ -78,21 +79,17 @@ function PixelSteps({ store }: { store: Store }) {
 }
 
 /** Intersects each ray of the pixel with all objects. */
-async function load(store: Store): Promise<Step[]> {
-  const { pixel, session } = store;
+async function load(store: ExplainView): Promise<Step[]> {
+  const { pixel } = store;
   if (!pixel?.tree) return [];
   const rays = flatten(pixel.tree).filter(({ term }) => {
     const role = term.segment?.role;
     return role && role !== "lit" && role !== "shadowed" && term.ray;
   });
   const casts = new Map<string, CastResult>();
-  for (const { path, term } of rays.slice(0, most)) {
-    const [origin, direction] = term.ray ?? [
-      [0, 0, 0],
-      [0, 0, 1],
-    ];
-    const { cast } = await session.ask({ kind: "cast", origin, direction, t_max: term.t_max }, "cast");
-    casts.set(path, cast);
+  for (const { path } of rays.slice(0, most)) {
+    const cast = await store.castOf(path);
+    if (cast) casts.set(path, cast);
   }
   return steps(pixel, casts);
 }

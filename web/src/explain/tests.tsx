@@ -1,8 +1,8 @@
 import { useState } from "preact/hooks";
 import type { ObjectTest, Verdict } from "../protocol";
 import { short } from "../ui/slider";
-import type { Store } from "../viewer/store";
 import { Rows } from "./rows";
+import type { ExplainView } from "./view";
 
 const order: Verdict[] = ["closest", "farther", "behind", "beyond", "missed"];
 const words: Record<Verdict, string> = {
@@ -15,7 +15,7 @@ const words: Record<Verdict, string> = {
 
 /** Lists the intersection tests of the selected ray with all objects, and why each is not the closest hit.
  */
-export function Tests({ store }: { store: Store }) {
+export function Tests({ store }: { store: ExplainView }) {
   const [open, setOpen] = useState<number | null>(null);
   const { cast } = store;
   if (!cast) return null;

@@ -1,14 +1,14 @@
 import { useState } from "preact/hooks";
 import type { Term } from "../protocol";
 import { short } from "../ui/slider";
-import type { Store } from "../viewer/store";
 import { Rows } from "./rows";
+import type { ExplainView } from "./view";
 
 /** Terms that contribute a smaller fraction of the pixel are folded. */
 const little = 0.01;
 
 /** Tree of the terms of a pixel's colour, largest first. */
-export function Tree({ store }: { store: Store }) {
+export function Tree({ store }: { store: ExplainView }) {
   const tree = store.pixel?.tree;
   if (!tree) return <p class="hint">The camera sees nothing through this pixel.</p>;
   return (
@@ -18,7 +18,17 @@ export function Tree({ store }: { store: Store }) {
   );
 }
 
-function Branch({ store, term, path, level }: { store: Store; term: Term; path: string; level: number }) {
+function Branch({
+  store,
+  term,
+  path,
+  level,
+}: {
+  store: ExplainView;
+  term: Term;
+  path: string;
+  level: number;
+}) {
   const [open, setOpen] = useState(level < 4);
   const [all, setAll] = useState(false);
   const order = term.terms.map((child, i) => ({ child, path: `${path}.${i}` }));
@@ -58,14 +68,24 @@ function Branch({ store, term, path, level }: { store: Store; term: Term; path: 
         <button type="button" class="title" onClick={choose}>
           <span class="chip" style={{ background: `rgb(${term.swatch.join(" ")})` }} />
           <span class={`words ${term.segment ? `ray-${term.segment.role}` : ""}`}>{term.title}</span>
-          <span class="share">{percent(term.share)}</span>
+          <span class="share" style={{ "--share": bar(term.share) }}>
+            {percent(term.share)}
+          </span>
         </button>
       </div>
       {chosen && store.unfolded && (
         <div class="detail">
           <Rows rows={term.rows} />
+          {term.origins.length > 0 && (
+            <ul class="origins">
+              {term.origins.map((line) => (
+                <li key={line}>{line}</li>
+              ))}
+            </ul>
+          )}
           <p class="value">
-            adds <strong>{term.adds.map((x) => short(x)).join("  ")}</strong>
+            adds <strong>{term.adds.map((x) => short(x)).join("  ")}</strong>, alone{" "}
+            {term.value.map((x) => short(x)).join("  ")}, in eight bits {term.swatch.join(" ")}
           </p>
         </div>
       )}
@@ -99,6 +119,11 @@ function moveFocus(event: KeyboardEvent & { currentTarget: Element }) {
       title.parentElement?.querySelector<HTMLElement>(".fold")?.click();
   } else return;
   event.preventDefault();
+}
+
+/** Width of the bar that shows a share. */
+function bar(share: number): string {
+  return `${(100 * Math.min(1, Math.max(0, share))).toFixed(1)}%`;
 }
 
 function percent(share: number): string {

@@ -5,7 +5,8 @@ import { Question } from "./parts";
 import type { Topic } from "./topic";
 
 interface Props {
-  engine: Engine;
+  /** Engine of the figures; `null` if no figure needs one. */
+  engine: Engine | null;
   /** Name of the page in the address. */
   name: string;
   topics: Topic[];

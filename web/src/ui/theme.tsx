@@ -5,15 +5,28 @@ const next: Record<Theme, Theme> = { system: "light", light: "dark", dark: "syst
 const sign: Record<Theme, string> = { system: "◐", light: "☀", dark: "☾" };
 
 function stored(): Theme {
-  const known = localStorage.getItem("durer-theme");
-  return known === "light" || known === "dark" ? known : "system";
+  try {
+    const known = localStorage.getItem("durer-theme");
+    return known === "light" || known === "dark" ? known : "system";
+  } catch {
+    // Some browsers have no storage for files.
+    return "system";
+  }
+}
+
+function store(theme: Theme) {
+  try {
+    localStorage.setItem("durer-theme", theme);
+  } catch {
+    // The choice lasts as long as the page.
+  }
 }
 
 /** Button that selects a light, dark or system theme. */
 export function ThemeButton() {
   const [theme, setTheme] = useState<Theme>(stored);
   useEffect(() => {
-    localStorage.setItem("durer-theme", theme);
+    store(theme);
     if (theme === "system") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme;
     window.dispatchEvent(new CustomEvent("durer-theme"));

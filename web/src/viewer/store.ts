@@ -1,5 +1,7 @@
 import { useEffect, useReducer } from "preact/hooks";
 import type { Session } from "../engine/engine";
+import { termAt } from "../explain/segments";
+import type { ExplainView } from "../explain/view";
 import type {
   CameraRay,
   CameraState,
@@ -23,7 +25,7 @@ import { cropForZoom, whole, type Zoom } from "./zoom";
 type Opened = Extract<Event, { kind: "opened" }>;
 
 /** State and operations of the viewer, to which its components subscribe. */
-export class Store {
+export class Store implements ExplainView {
   readonly session: Session;
   opened: Opened | null = null;
   text = "";
@@ -235,15 +237,24 @@ export class Store {
   /** Selects a term of the tree, and intersects its ray with all objects. */
   async choose(path: string) {
     this.chosen = path;
-    const term = termAt(this.pixel, path);
     this.changed();
-    if (!term?.ray) return;
-    const [origin, direction] = term.ray;
-    const { cast } = await this.session.ask({ kind: "cast", origin, direction, t_max: term.t_max }, "cast");
-    if (this.chosen === path) {
+    const cast = await this.castOf(path);
+    if (cast && this.chosen === path) {
       this.cast = cast;
       this.changed();
     }
+  }
+
+  /** Intersects the ray of a term with all objects. */
+  async castOf(path: string): Promise<CastResult | null> {
+    const term = termAt(this.pixel, path);
+    if (!term?.ray) return null;
+    const [origin, direction] = term.ray;
+    return (await this.session.ask({ kind: "cast", origin, direction, t_max: term.t_max }, "cast")).cast;
+  }
+
+  get aspect(): number {
+    return this.head ? this.head.full_width / this.head.full_height : 1;
   }
 
   hover(path: string | null) {
@@ -379,15 +390,8 @@ export class Store {
   }
 }
 
-/** Returns the term at a path such as `0.2.1` in the tree of a pixel. */
-export function termAt(pixel: PixelExplanation | null, path: string) {
-  let term = pixel?.tree ?? null;
-  for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
-  return term;
-}
-
 /** Renders the component again when the store changes. */
-export function useStore(store: Store) {
+export function useStore(store: { subscribe(listener: () => void): () => void }) {
   const [, again] = useReducer((count: number) => count + 1, 0);
   useEffect(() => store.subscribe(() => again(undefined as never)), [store]);
 }

@@ -3,6 +3,7 @@
 use super::mistakes;
 use super::pairs::Pair;
 use super::pixel_hit::PixelHit;
+use crate::page::PairPictures;
 use durer::image::compare::{Comparison, Finding, Verdict};
 use durer::mistakes::Diagnosis;
 
@@ -72,13 +73,6 @@ impl ComparedPair {
             Outcome::Failed(_) => "error",
         }
     }
-}
-
-/// The pictures of a pair for the HTML report, as data URIs of PNG files.
-pub struct PairPictures {
-    pub reference: String,
-    pub picture: String,
-    pub heat: String,
 }
 
 /// Returns the name of a pair, preceded by the student's name.

@@ -1,31 +1,42 @@
 //! The page of `durer explain --html`.
 
 use crate::failure::Failure;
-use crate::page;
+use crate::open::CompiledInput;
+use crate::page::{ExplainReport, Report, png, uri, with_data};
 use durer::image::{Image, Layer, Transfer};
-use durer::report::{lights, outlines};
-use durer::world::World;
-use serde_json::{Value, json};
+use durer::render::Job;
+use durer::render::explain::SceneNames;
+use durer::report::Explained;
+use durer_session::{drawn_scene, explained_samples};
+use std::path::Path;
 
-/// Template of the page, without data.
-const PAGE: &str = include_str!("page.html");
 /// Returns a self-contained page with the picture, the tree of `sample`, and its rays in 3D.
 pub fn page(
-    explanation: Value,
+    file: &Path,
+    compiled: &CompiledInput,
+    job: &Job,
+    subject: &Explained,
     sample: usize,
-    world: &World,
     picture: &Image,
     transfer: Transfer,
 ) -> Result<String, Failure> {
-    let picture = page::png(Layer::color("color", picture.clone()), transfer)?;
-    let data = json!({
-        "explanation": explanation,
-        "sample": sample,
-        "picture": page::uri(&picture),
-        "transfer": transfer.name(),
-        "outlines": outlines(world),
-        "lights": lights(world),
-        "eye": world.camera_frame().eye,
-    });
-    Ok(page::with_data(PAGE, &data))
+    let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
+    let (pixel, notes) = match subject {
+        Explained::Pixel(pixel) => {
+            (Some([pixel.x, pixel.y]), if job.method.is_stochastic() { pixel.firefly() } else { Vec::new() })
+        }
+        Explained::Ray(_) => (None, Vec::new()),
+    };
+    let encoded = pixel.map(|_| png(Layer::color("color", picture.clone()), transfer)).transpose()?;
+    with_data(&Report::Explain(ExplainReport {
+        file: file.to_string_lossy().into_owned(),
+        pixel,
+        transfer: transfer.name().into(),
+        sample,
+        samples: explained_samples(names, job, subject, sample, transfer),
+        notes,
+        picture: encoded.as_deref().map(uri),
+        size: [picture.width, picture.height],
+        scene: drawn_scene(names, compiled.loaded.dialect),
+    }))
 }

@@ -1,39 +1,38 @@
 //! Writes a lesson as an HTML page.
 
 use super::step_files::{Figure, Lesson, StepFiles};
-use crate::page::{uri, with_data};
+use crate::failure::Failure;
+use crate::page::{LessonFigure, LessonReport, LessonStep, Report, uri, with_data};
 use durer::lesson::OWN_SCENE;
-use serde_json::{Map, Value, json};
-
-/// Template of the page, without data.
-const PAGE: &str = include_str!("page.html");
 
 /// Returns a self-contained HTML page.
-pub fn page(lesson: &Lesson) -> String {
-    let pictures: Map<String, Value> =
-        lesson.pictures.iter().map(|(name, png)| (name.clone(), uri(png).into())).collect();
-    let data = json!({
-        "scene": lesson.scene,
-        "pictures": pictures,
-        "steps": lesson.steps.iter().map(|written| step(written, &lesson.scene)).collect::<Vec<_>>(),
-        "own_scene": lesson.shows_ours().then_some(OWN_SCENE),
-    });
-    with_data(PAGE, &data)
+pub fn page(lesson: &Lesson) -> Result<String, Failure> {
+    with_data(&Report::Lesson(LessonReport {
+        scene: lesson.scene.clone(),
+        steps: lesson.steps.iter().map(|written| step(written, &lesson.scene)).collect(),
+        pictures: lesson.pictures.iter().map(|(name, png)| (name.clone(), uri(png))).collect(),
+        own_scene: lesson.shows_ours().then(|| OWN_SCENE.into()),
+    }))
 }
 
-fn step(step: &StepFiles, scene: &str) -> Value {
-    let figure = |figure: &Figure| json!({ "caption": figure.caption, "file": figure.file });
-    json!({
-        "title": step.title,
-        "elsewhere": step.elsewhere(scene),
-        // Print the text of a topic only once, at its first step.
-        "words": (!step.continues_topic).then_some(step.topic.words),
-        "equations": (!step.continues_topic).then_some(step.topic.equations),
-        "before": step.before.as_ref().map(figure),
-        "after": figure(&step.after),
-        "change": step.change,
-        "plan": step.plan.as_ref().map(|plan| &plan.0),
-        "facts": step.effect,
-        "places": step.topic.places.iter().filter(|_| !step.continues_topic).map(|place| json!([place.file, place.symbol])).collect::<Vec<_>>(),
-    })
+fn step(step: &StepFiles, scene: &str) -> LessonStep {
+    let figure = |figure: &Figure| LessonFigure { caption: figure.caption.into(), file: figure.file.clone() };
+    // Print the text of a topic only once, at its first step.
+    let topic = (!step.continues_topic).then_some(step.topic);
+    LessonStep {
+        title: step.title.clone(),
+        elsewhere: step.elsewhere(scene),
+        words: topic.map(|topic| topic.words.into()),
+        equations: topic.iter().flat_map(|topic| topic.equations).map(|equation| equation.to_string()).collect(),
+        before: step.before.as_ref().map(figure),
+        after: figure(&step.after),
+        change: step.change.clone(),
+        plan: step.plan.as_ref().map(|plan| plan.0.clone()),
+        facts: step.effect.clone(),
+        places: topic
+            .iter()
+            .flat_map(|topic| topic.places)
+            .map(|place| [place.file.to_string(), place.symbol.to_string()])
+            .collect(),
+    }
 }

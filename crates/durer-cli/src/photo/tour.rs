@@ -5,17 +5,14 @@ use super::inputs::{bytes_below, from_photo_error, read};
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::output::save;
-use crate::{page, progress};
+use crate::page::{Report, TourPhotograph, TourReport, with_data};
+use crate::progress;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use durer::options::memory::Memory;
 use durer_photo::photo;
 use durer_photo::tour::tour_views;
-use serde_json::json;
 use std::path::Path;
-
-/// Template of the page, without data.
-const PAGE: &str = include_str!("tour.html");
 
 /// Runs `durer photo tour`.
 pub fn run(args: &TourArgs) -> Result<(), Failure> {
@@ -45,8 +42,20 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
     // Six decimal places are more than a screen can resolve.
     let short = |value: f64| (value * 1e6).round() / 1e6;
-    let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
-    let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();
-    let data = json!({"photographs": photographs, "pictures": pictures, "points": points, "colors": colors});
-    save(&[(&destination, page::with_data(PAGE, &data).into_bytes())], args.quiet)
+    let photographs = photographs.into_iter().zip(pictures).map(|(view, picture)| TourPhotograph {
+        name: view.name,
+        picture,
+        size: view.size,
+        focal: view.focal,
+        center: view.center,
+        rotation: view.rotation,
+        corners: view.corners,
+        points: view.points,
+    });
+    let report = Report::Tour(TourReport {
+        photographs: photographs.collect(),
+        points: all.points.iter().map(|point| point.position.map(short).into()).collect(),
+        colors: all.points.iter().map(|point| point.color).collect(),
+    });
+    save(&[(&destination, with_data(&report)?.into_bytes())], args.quiet)
 }

@@ -21,6 +21,11 @@ const mouse = (target, type, x, y, buttons = 1) => {
 };
 // Headless runs have no pointer to capture.
 Element.prototype.setPointerCapture = () => {};
+// Pages draw again after a change.
+const wait = () => new Promise(resolve => setTimeout(resolve, 60));
+const count = selector => document.querySelectorAll(selector).length;
+const find = selector => document.querySelector(selector);
+window.addEventListener("unhandledrejection", e => { see(`ERROR ${e.reason}`); done(); });
 window.addEventListener("error", e => { see(`ERROR ${e.message}`); done(); });
 "#;
 
@@ -81,9 +86,8 @@ const groundOf = element => {
   const own = parts(getComputedStyle(element).backgroundColor);
   return own.a === 1 ? own.rgb : over(own, groundOf(element.parentElement));
 };
-const hex = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16));
 const judge = scheme => {
-  document.documentElement.style.colorScheme = scheme;
+  document.documentElement.dataset.theme = scheme;
   const wrong = [];
   let least = 21;
   for (const element of document.querySelectorAll("body *")) {
@@ -96,15 +100,20 @@ const judge = scheme => {
     least = Math.min(least, found);
     if (found < (large ? 3 : 4.5)) wrong.push(`${found.toFixed(2)} for "${text.slice(0, 30)}"`);
   }
-  if (typeof COLORS === "object") for (const [name, color] of Object.entries(COLORS)) {
-    const found = contrast(hex(color), groundOf(document.body));
+  const probe = document.body.appendChild(document.createElement("i"));
+  for (const name of ["camera", "reflected", "transmitted", "scattered", "lit", "shadowed"]) {
+    probe.style.color = `var(--ray-${name})`;
+    const found = contrast(parts(getComputedStyle(probe).color).rgb, groundOf(document.body));
     if (found < 3) wrong.push(`${found.toFixed(2)} for lines of ${name}`);
   }
+  probe.remove();
   const width = document.documentElement.scrollWidth;
   if (width > innerWidth) wrong.push(`${width} pixels wide`);
   return `${innerWidth} ${scheme}: ${wrong.length ? wrong.slice(0, 5).join(", ") : `readable, least contrast ${least.toFixed(2)}`}`;
 };
 window.addEventListener("error", e => parent.postMessage(`ERROR ${e.message}`, "*"));
+// Colours change at once.
+document.head.append(Object.assign(document.createElement("style"), { textContent: "* { transition: none !important }" }));
 setTimeout(() => {
   document.querySelectorAll("details").forEach(details => details.open = true);
   parent.postMessage(["light", "dark"].map(judge).join("; "), "*");
@@ -122,8 +131,8 @@ fn put_with(folder: &TestFolder, page: &str, name: &str, script: &str) {
 #[track_caller]
 fn title_of(folder: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(folder.bytes(page)).unwrap();
-    // The SVG namespace is a URL, but it is never loaded.
-    let links = text.replace("http://www.w3.org/2000/svg", "");
+    // The namespaces of XML are URLs, but they are never loaded.
+    let links = text.replace("http://www.w3.org/", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
     put_with(folder, page, name, script);
     let run = Command::new("timeout")

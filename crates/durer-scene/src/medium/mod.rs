@@ -7,7 +7,7 @@ pub mod phase;
 mod tests;
 
 use crate::math::{Aabb, Affine, Color, Ray64, Vec3, fp};
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::{Lanes, Spectrum, lane_sum};
 pub use fog::Fog;
 use glam::DVec3;
 pub use grid::DensityGrid;
@@ -159,7 +159,7 @@ impl Medium {
                     let Some(next) = collision(at, to, majorant, random) else { break };
                     at = next;
                     let here = extinction * (place.density(grid, segment.point(at)) / majorant);
-                    let real = (normalized(weights * throughput) * here).element_sum();
+                    let real = lane_sum(normalized(weights * throughput) * here);
                     if random() < real {
                         return DistanceSample::Scattered(at, throughput * albedo * here / real);
                     }
@@ -180,11 +180,11 @@ impl Medium {
                 let distance = if chosen > 0.0 { -fp::ln(1.0 - random()) / chosen } else { f32::INFINITY };
                 if distance < to - from {
                     let throughput = beer_transmittance(extinction, distance);
-                    let density = (weights * extinction * throughput).element_sum();
+                    let density = lane_sum(weights * extinction * throughput);
                     return DistanceSample::Scattered(from + distance, albedo * extinction * throughput / density);
                 }
                 let throughput = beer_transmittance(extinction, to - from);
-                DistanceSample::Passed(throughput / (weights * throughput).element_sum().max(f32::MIN_POSITIVE))
+                DistanceSample::Passed(throughput / lane_sum(weights * throughput).max(f32::MIN_POSITIVE))
             }
         }
     }
@@ -200,7 +200,7 @@ fn collision(at: f32, to: f32, majorant: f32, random: &mut dyn FnMut() -> f32) -
 /// Normalizes the weights of the lanes to a sum of 1.
 fn normalized(weights: Spectrum) -> Spectrum {
     let weights = weights.max(Spectrum::ZERO);
-    let sum = weights.element_sum();
+    let sum = lane_sum(weights);
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 

@@ -31,6 +31,18 @@ use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 /// Radiance in four lanes, or a factor that scales it.
 pub type Spectrum = glam::Vec4;
 
+/// Sum of the lanes. `Vec4::element_sum` would add them in an order that depends on the processor.
+pub fn lane_sum(light: Spectrum) -> f32 {
+    let [a, b, c, d] = light.to_array();
+    (a + b) + (c + d)
+}
+
+/// Sum of the products of the lanes, in the same order on every processor.
+fn lane_dot(light: Spectrum, other: Spectrum) -> f32 {
+    let [a, b, c, d] = (light * other).to_array();
+    (a + c) + (b + d)
+}
+
 /// Representation of colour in light transport, RGB or spectral, selected by `--color`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -153,7 +165,7 @@ impl Lanes {
     pub fn color(&self, light: Spectrum) -> Color {
         match self {
             Lanes::Rgb => light.truncate(),
-            Lanes::Wavelengths(waves) => Color::from_array(waves.observer.map(|observer| observer.dot(light))),
+            Lanes::Wavelengths(waves) => Color::from_array(waves.observer.map(|observer| lane_dot(observer, light))),
         }
     }
 

@@ -162,3 +162,12 @@ fn white_is_white_in_every_space() {
     // The red primary of a wider space lies outside sRGB.
     assert!(RgbSpace::named("rec2020").unwrap().color(Vec3::X).x > 1.5);
 }
+
+/// Lanes whose sum depends on the order in which they are added.
+#[test]
+fn lanes_are_added_in_one_order() {
+    let light = Spectrum::new(1.0, 2e-8, 3e-8, 4e-8);
+    assert_eq!(lane_sum(light), (1.0 + 2e-8) + (3e-8 + 4e-8));
+    assert_ne!(lane_sum(light), ((1.0 + 2e-8) + 3e-8) + 4e-8);
+    assert_eq!(lane_dot(light, Spectrum::ONE), (1.0 + 3e-8) + (2e-8 + 4e-8));
+}

@@ -83,6 +83,8 @@ pub struct Term {
     pub t_max: Option<f32>,
     /// Number of the hit or blocking object.
     pub object: Option<u32>,
+    /// Lines that derive the numbers of the term from the fields of the scene.
+    pub origins: Vec<String>,
     /// Terms that sum to this one.
     pub terms: Vec<Term>,
 }

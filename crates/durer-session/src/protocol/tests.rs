@@ -1,4 +1,5 @@
 use super::*;
+use crate::{DrawnScene, ExplainedSample, TermCast};
 use std::path::Path;
 use ts_rs::TS;
 
@@ -47,6 +48,9 @@ fn typescript() -> String {
         MaterialState,
         Keyword,
         KeywordField,
+        DrawnScene,
+        TermCast,
+        ExplainedSample,
     ];
     let head = "// Written by `DURER_WRITE=1 cargo test -p durer-session` from crates/durer-session/src/protocol.rs.\n";
     let types: Vec<String> = all.iter().map(|declaration| format!("export {declaration}\n")).collect();

@@ -17,7 +17,7 @@ use super::{LobeKind, LobeSample, Scatter};
 use crate::bsdf::fresnel;
 use crate::material::HairMaterial;
 use crate::math::{Color, Vec2, Vec3, fp};
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::{Lanes, Spectrum, lane_sum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Number of light paths, which are R, TT, TRT, and all paths with more internal reflections.
@@ -170,7 +170,7 @@ impl Hair<'_> {
         let inside = mirrored * through;
         let rest = inside * inside / (Spectrum::ONE - inside).max(Spectrum::splat(1e-6));
         let shares = [Spectrum::splat(mirrored), once, once * inside, once * rest];
-        let sampling_weights = shares.map(|share| share.element_sum());
+        let sampling_weights = shares.map(lane_sum);
         PathLobes {
             shares,
             sampling_weights,
