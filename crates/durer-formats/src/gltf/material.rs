@@ -100,6 +100,11 @@ impl Model<'_> {
         if emissive != Vec3::ZERO {
             (m.emission_luminance, m.emission_color) = (strength, emissive);
             m.emission_texture = at.get("emissiveTexture").and_then(|texture| self.texture(&texture, |_| ()));
+        } else if let (Some(texture), None) = (at.get("emissiveTexture"), at.get("emissiveFactor")) {
+            texture.warning(
+                "EMISSIVE_TEXTURE",
+                "this texture has no effect, because `emissiveFactor` is 0 unless it is set",
+            );
         }
         if let Some(extensions) = &extensions {
             self.extended(&mut m, extensions);

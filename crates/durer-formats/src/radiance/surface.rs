@@ -41,6 +41,10 @@ impl Reader<'_> {
                     return;
                 }
                 let radius = primitive.numbers[3];
+                if radius < 0.0 {
+                    let message = "the radius of a sphere is negative, so its surface faces inwards, as in Radiance";
+                    self.report.warn_once("bad-value", at, message);
+                }
                 let inward = ((primitive.kind.text == "bubble") != (radius < 0.0)) != place.inverted;
                 let (center, radius) = (map.transform_point3(primitive.point(0)), scale * radius.abs());
                 if radius == 0.0 {
