@@ -74,6 +74,10 @@ impl Model<'_> {
         let words = [("OPAQUE", Alpha::Opaque), ("MASK", Alpha::Mask), ("BLEND", Alpha::Blend)];
         let alpha = at.get("alphaMode").and_then(|mode| mode.word(&words)).unwrap_or(Alpha::Opaque);
         let cutoff = at.get("alphaCutoff").and_then(|cutoff| cutoff.number_in(0.0..)).unwrap_or(0.5);
+        if let Some(value) = at.get("alphaCutoff").filter(|_| cutoff > 1.0) {
+            let message = "opacity goes from 0 to 1, so nothing of this material is visible with a cutoff above 1";
+            value.warning("ALPHA_CUTOFF", message);
+        }
         let extensions = at.get("extensions");
         let extension = |name| extensions.as_ref().and_then(|extensions| extensions.get(name));
         let glossiness = extension("KHR_materials_pbrSpecularGlossiness");

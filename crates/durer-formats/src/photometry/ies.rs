@@ -183,24 +183,29 @@ fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diag
     }
     let more = numbers.next("end").ok().map(|(_, start)| start..numbers.at);
     let mut odd = Vec::new();
-    let mut warn = |at: std::ops::Range<usize>, message: &str| {
+    let mut warn = |at: std::ops::Range<usize>, code: &'static str, message: &str| {
         let error = numbers.error(at.start, at.end, message);
-        odd.push(Diagnostic { severity: Severity::Warning, ..*error });
+        odd.push(Diagnostic { severity: Severity::Warning, code, ..*error });
     };
     let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
         // The file does not define the remaining angles, so close the circle with the values of the
         // first angle.
-        warn(angles.clone(), "the horizontal angles end before 360 degrees: the gap is interpolated linearly");
+        warn(
+            angles.clone(),
+            "bad-file",
+            "the horizontal angles end before 360 degrees: the gap is interpolated linearly",
+        );
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
     }
     if candela.iter().all(|candela| *candela == 0.0) {
-        warn(angles, "this luminaire emits no light, because all its candela values are 0");
+        warn(angles, "black-light", "this luminaire emits no light, because all its candela values are 0");
     }
     if let Some(more) = more {
         warn(
             more,
+            "bad-file",
             "more numbers follow the last candela value, for example because of decimal commas or missing angles",
         );
     }

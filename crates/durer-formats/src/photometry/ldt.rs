@@ -189,7 +189,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Lumi
             angles.end,
             "this luminaire emits no light, because its flux or all its intensities are 0",
         );
-        diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
+        diagnostics.push(Diagnostic { severity: Severity::Warning, code: "black-light", ..*error });
     }
     names.retain(|(_, name)| !name.is_empty());
     Ok(Luminaire {

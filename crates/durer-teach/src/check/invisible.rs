@@ -169,8 +169,31 @@ fn negative_scale(scene_probe: &SceneProbe, number: u32) -> Option<(Span, String
     None
 }
 
+/// Maximum number of triangles of a mesh that is searched for edges.
+const MAX_TRIANGLES: usize = 20_000;
+
+/// Returns true if a mesh is open: some edge belongs to an odd number of its triangles.
+fn has_edge(object: &Object) -> bool {
+    let Geometry::Mesh(tree) = &object.geometry else { return false };
+    let mut odd = std::collections::HashSet::new();
+    for triangle in 0..tree.mesh.len().min(MAX_TRIANGLES) {
+        let corners = tree.mesh.corners(triangle as u32).map(|corner| corner.to_array().map(f32::to_bits));
+        for i in 0..3 {
+            let (a, b) = (corners[i], corners[(i + 1) % 3]);
+            let edge = if a < b { (a, b) } else { (b, a) };
+            if !odd.remove(&edge) {
+                odd.insert(edge);
+            }
+        }
+    }
+    tree.mesh.len() <= MAX_TRIANGLES && !odd.is_empty()
+}
+
 /// Returns true if the centre of one object is inside another.
 fn contains_center(scene_probe: &SceneProbe, outer: u32, inner: u32) -> bool {
+    if has_edge(&scene_probe.world().objects()[outer as usize]) {
+        return false;
+    }
     let middle = scene_probe.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
     middle.is_some_and(|middle| super::containment::containing_objects(scene_probe.world(), middle).contains(&outer))
 }

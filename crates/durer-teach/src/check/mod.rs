@@ -73,6 +73,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
         "bad-place",
         &["camera-away", "camera-inside", "all-missed", "unseen", "light-blocked", "lamp-turned", "too-dark"],
     ),
+    ("ALPHA_CUTOFF", &["not-there"]),
     ("black-light", &["same-color", "too-dark", "one-color"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
