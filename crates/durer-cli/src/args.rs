@@ -9,14 +9,14 @@ use crate::farm::FarmArgs;
 use crate::info::InfoArgs;
 use crate::lesson::LessonArgs;
 use crate::live::LiveArgs;
-use crate::manual::ManArgs;
 use crate::measure::MeasureArgs;
 use crate::merge::MergeArgs;
 use crate::photo::PhotoArgs;
 use crate::render::RenderCommand;
 use crate::verify::VerifyArgs;
 use crate::words::WordsArgs;
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
 
 /// A ray tracer: exact, explainable, deterministic.
 #[derive(Parser)]
@@ -66,4 +66,17 @@ pub enum Command {
         shell: clap_complete::Shell,
     },
     Man(ManArgs),
+}
+
+/// Print the manual page of the program or of a command
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer man render | man -l -
+  durer man --folder ~/.local/share/man/man1")]
+pub struct ManArgs {
+    /// Command whose page is printed
+    pub command: Option<String>,
+    /// Write the pages of the program and of all commands into this folder: durer.1, durer-render.1 and so on
+    #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
+    pub folder: Option<PathBuf>,
 }

@@ -1,13 +1,12 @@
 //! Prints the dialects, shell completions and the manual pages.
 
-use crate::args::Cli;
+use crate::args::{Cli, ManArgs};
 use crate::failure::{Failure, invalid_input};
 use crate::help::arrange;
 use crate::terminal::print_line;
-use clap::{Args, Command, CommandFactory};
+use clap::{Command, CommandFactory};
 use durer::dialect::{Dialect, Quirk};
 use durer::image::save;
-use std::path::PathBuf;
 
 /// Implements `durer dialects`, which prints the dialects and the quirks.
 pub fn dialects() -> Result<(), Failure> {
@@ -34,19 +33,6 @@ pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     clap_complete::generate(shell, &mut arrange(Cli::command(), true), "durer", &mut text);
     print_line(String::from_utf8_lossy(&text).trim_end());
     Ok(())
-}
-
-/// Print the manual page of the program or of a command
-#[derive(Args)]
-#[command(after_help = "Examples:
-  durer man render | man -l -
-  durer man --folder ~/.local/share/man/man1")]
-pub struct ManArgs {
-    /// Command whose page is printed
-    pub command: Option<String>,
-    /// Write the pages of the program and of all commands into this folder: durer.1, durer-render.1 and so on
-    #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
-    pub folder: Option<PathBuf>,
 }
 
 /// Implements `durer man`.

@@ -3,7 +3,7 @@
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, VectorLibrary};
 use durer_scene::camera::{CameraRules, RayArithmetic, UpRule};
-use durer_scene::dialect::{Arithmetic, DialectRules, Falloff, Quirk};
+use durer_scene::dialect::{Arithmetic, Dialect, DialectRules, Falloff, Quirk};
 use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
@@ -27,6 +27,11 @@ pub fn camera_rules(rules: &DialectRules) -> CameraRules {
         border_pixels: rules.has(Quirk::BorderPixels),
         stretch: rules.has(Quirk::Stretch),
     }
+}
+
+/// Returns true if scenes of the dialect consist of nodes, which changes the help texts.
+pub(super) fn is_nodes(rules: &DialectRules) -> bool {
+    rules.name == Dialect::F23.name()
 }
 
 /// Returns the rules for multiplying transform matrices.
