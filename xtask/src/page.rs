@@ -75,7 +75,8 @@ fn measure(web: &Path) -> Result<ExitCode> {
     }
     let test = |package: &str, file: &str| {
         let mut command = Command::new(cargo());
-        command.args(["test", "--release", "-p", package, "--test", file]).env("DURER_EDITS", "3334");
+        let arguments = ["test", "--release", "-p", package, "--test", file, "--", "--nocapture"];
+        command.args(arguments).env("DURER_EDITS", "3334");
         call(&mut command)
     };
     test("durer-session", "edits")?;

@@ -234,7 +234,7 @@ height: number,
  */
 text: string, 
 /**
- * What the scene shows there; `None` without a scene.
+ * The hit in the scene there; `None` without a scene.
  */
 there: RegionHit | null, };
 
@@ -318,7 +318,7 @@ change: string | null,
  */
 plan: string | null, 
 /**
- * What the step changes, in numbers.
+ * Effect of the step, in numbers.
  */
 facts: string, 
 /**

@@ -171,11 +171,11 @@ pub struct RegionReport {
     pub height: u32,
     /// Size, place and difference in words.
     pub text: String,
-    /// What the scene shows there; `None` without a scene.
+    /// The hit in the scene there; `None` without a scene.
     pub there: Option<RegionHit>,
 }
 
-/// What the ray through the pixel that differs most in a region hits.
+/// First hit of the ray through the pixel that differs most in a region.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct RegionHit {
@@ -233,7 +233,7 @@ pub struct LessonStep {
     pub change: Option<String>,
     /// SVG drawing of the rays from above. It contains no text of the scene.
     pub plan: Option<String>,
-    /// What the step changes, in numbers.
+    /// Effect of the step, in numbers.
     pub facts: String,
     /// Files and symbols in the source code.
     pub places: Vec<[String; 2]>,
