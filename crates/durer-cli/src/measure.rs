@@ -139,7 +139,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     sensors.extend(args.grid.iter().flat_map(|grid| grid.sensors(normal, up)).take(MAX_POINTS + 1 - alone));
     if sensors.is_empty() || sensors.len() > MAX_POINTS {
         return Err(invalid_input(format!(
-            "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z, --grid or --points"
+            "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid, or a list with --points"
         )));
     }
     let settings = RenderSettings { bounces: args.bounces, ..Job::default().settings };

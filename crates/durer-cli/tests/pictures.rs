@@ -114,17 +114,21 @@ fn pictures_of_sixteen_bits_have_finer_steps() {
 #[test]
 fn exposure_is_chosen_for_bright_and_dark_scenes() {
     let folder = TestFolder::new();
-    for (light, stops) in [(1.0, 0.0), (5000.0, -12.0), (0.001, 9.0)] {
-        let lit = SCENE.replace("color 0.2 0.1 0.5", &format!("color {light} {light} {light}"));
-        folder.write("lit.txt", lit.replace("color 0.9 0.9 0.8", &format!("color {light} {light} {light}")));
+    let mut stops = Vec::new();
+    for light in [1.0, 5000.0, 0.001] {
+        let grey = |value: f32| format!("{0} {0} {0}", value * light);
+        let lit = SCENE.replace("color 0.2 0.1 0.5", &format!("color {}", grey(0.3)));
+        let lit = lit.replace("ambientLight 0.2 0.2 0.2", &format!("ambientLight {}", grey(0.2)));
+        folder.write("lit.txt", lit.replace("color 0.9 0.9 0.8", &format!("color {}", grey(0.9))));
         let output = folder.expect_exit(0, "render lit.txt --size 24x24 --exposure auto -o lit.png");
         let chosen = output.err.split("--exposure auto chose ").nth(1).and_then(|rest| rest.split(' ').next());
-        let chosen: f32 = chosen.unwrap_or_else(|| panic!("{}", output.err)).parse().unwrap();
-        assert!((chosen - stops).abs() < 4.0, "{light}: {chosen}");
+        stops.push(chosen.unwrap_or_else(|| panic!("{}", output.err)).parse::<f32>().unwrap());
         let pixels = folder.image8("lit.png").pixels;
         let bright = pixels.iter().filter(|pixel| pixel[1] > 60).count();
         assert!(bright > pixels.len() / 4, "{light}: {bright}");
     }
+    // log2(5000) and log2(1000), with stops rounded to two decimals.
+    assert!((stops[0] - stops[1] - 12.288).abs() < 0.02 && (stops[2] - stops[0] - 9.966).abs() < 0.02, "{stops:?}");
     folder.expect_failure(2, "render scene.txt -o p.png --exposure bright", &["a number from -60 to 60, or auto"]);
 }
 

@@ -514,6 +514,11 @@ impl<'a> Loader<'a> {
         self.report.unsupported_once(at, message);
     }
 
+    /// Warns once about a value that is probably a mistake.
+    pub fn warn_value(&self, at: Span, message: String) {
+        self.report.warn_once("bad-value", at, message);
+    }
+
     /// Returns the next element of a transform, and also consumes its end tag.
     pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         let Some(tag) = self.next(xml)? else { return Ok(None) };

@@ -75,7 +75,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             if angle.fract() != 0.0 && (1.0..8.5).contains(&quarters) && (quarters - quarters.round()).abs() < 2e-3 {
                 let message =
                     format!("this angle looks like radians, but angles are in degrees: {}", angle.to_degrees().round());
-                loader.report.warn_once("bad-value", tag.at, message);
+                loader.warn_value(tag.at, message);
             }
             if axis == DVec3::ZERO {
                 loader.error(tag.at, "a rotation needs an axis, for example `x=\"1\"`", None);

@@ -22,7 +22,7 @@ use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
 use durer_scene::camera::{CameraBasis, Projection};
 use durer_scene::dialect::{Dialect, DialectRules, MeshNormals, Quirk};
-use durer_scene::light::{DirectionalLight, Illuminate as _, Light};
+use durer_scene::light::{DirectionalLight, Light};
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::scene::{self, Group, MatrixOp, ObjectKind, Scene};
 use durer_scene::shape::mesh::enlarged;
@@ -89,10 +89,12 @@ pub fn compile(
     }
     let mut loader = files::Loader::new(resources, rules, &scene.assets);
     let Some(camera) = scene.camera.clone() else {
-        diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(match is_nodes(rules) {
-            true => "add a `Camera { ... }`",
-            false => "add a `PerspectiveCamera { ... }`",
-        }));
+        diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(
+            match rules::is_nodes(rules) {
+                true => "add a `Camera { ... }`",
+                false => "add a `PerspectiveCamera { ... }`",
+            },
+        ));
         return None;
     };
     let invalid = scene.validate_as(rules.quirks);
@@ -418,7 +420,7 @@ impl SceneFlattener<'_, '_> {
             n => message += &format!("; {} other objects have no material either", n - 1),
         }
         let warning = Diagnostic::warning(message).code("no-material").at(span);
-        self.diagnostics.push(warning.help(match is_nodes(self.rules) {
+        self.diagnostics.push(warning.help(match rules::is_nodes(self.rules) {
             true => "write `Component<Material> { index 0 }` into the object's node",
             false => "write `MaterialIndex 0` before the object",
         }));
