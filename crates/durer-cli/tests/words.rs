@@ -133,7 +133,8 @@ fn terms_lead_to_words() {
 #[test]
 fn info_of_a_luminaire() {
     let folder = TestFolder::new();
-    // Lambert's law with a peak of 1000 cd: the flux is 1000 pi lm, or 3141.6 lm.
+    // Lambert's law with a peak of 1000 cd: the flux is 1000 pi lm, or 3141.6 lm,
+    // of which linear interpolation between whole degrees loses 0.003 %.
     let angles: Vec<String> = (0..=90).map(|angle| angle.to_string()).collect();
     let candela: Vec<String> =
         (0..=90).map(|angle| (1000.0 * durer::math::fp::sin_cos_degrees(f64::from(angle)).1).to_string()).collect();
@@ -145,13 +146,13 @@ fn info_of_a_luminaire() {
     folder.write("lamp.ies", &lamp);
     let text = folder.expect_exit(0, "info lamp.ies --polar lamp.svg").out;
     for line in [
-        "luminaire  Panel <1>\n",
-        "format     IES LM-63, type C, 91 vertical and 1 horizontal angles\n",
-        "flux       3141.3 lm, 100.0 % of it downwards\n",
-        "sources    4000.0 lm; light output ratio 78.5 %\n",
-        "power      40.0 W; luminous efficacy 78.5 lm/W\n",
-        "peak       1000.0 cd at vertical angle 0, horizontal angle 0\n",
-        "beam       120.0 degrees in plane 0-180, 120.0 degrees in plane 90-270 (half of the maximum)\n",
+        "luminaire    Panel <1>\n",
+        "format       IES LM-63, type C, 91 vertical and 1 horizontal angles\n",
+        "flux         3141.5 lm, 100.0 % of it downwards\n",
+        "sources      4000.0 lm; light output ratio 78.5 %\n",
+        "power        40.0 W; luminous efficacy 78.5 lm/W\n",
+        "peak         1000.0 cd at vertical angle 0, horizontal angle 0\n",
+        "beam         120.0 degrees in plane 0-180, 120.0 degrees in plane 90-270 (half of the maximum)\n",
         "wrote lamp.svg\n",
     ] {
         assert!(text.contains(line), "{line}\n{text}");

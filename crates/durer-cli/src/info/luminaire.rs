@@ -40,7 +40,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let summary = luminaire.profile.summary();
     match args.json {
         true => print_line(&serde_json::to_string_pretty(&json(&luminaire, &summary))?),
-        false => lines(&luminaire, &summary).iter().for_each(|(what, text)| print_line(&format!("{what:<11}{text}"))),
+        false => lines(&luminaire, &summary).iter().for_each(|(what, text)| print_line(&format!("{what:<13}{text}"))),
     }
     if let Some(target) = target {
         save_all(&[(&target, polar::draw(&luminaire.profile, &title(&luminaire, path)).into_bytes())])?;
