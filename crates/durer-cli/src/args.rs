@@ -76,7 +76,8 @@ pub enum Command {
 pub struct ManArgs {
     /// Command whose page is printed
     pub command: Option<String>,
-    /// Write the pages of the program and of all commands into this folder: durer.1, durer-render.1 and so on
+    /// Folder into which the pages of the program and of all commands are written: durer.1,
+    /// durer-render.1 and so on
     #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
     pub folder: Option<PathBuf>,
 }

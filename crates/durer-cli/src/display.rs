@@ -104,7 +104,7 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 impl DisplayArgs {
-    /// Returns the conversion for a finished picture, and prints the exposure that `--exposure auto`
+    /// Returns the conversion for a finished picture. Prints the exposure that `--exposure auto`
     /// chooses.
     pub fn display_of(&self, part: &PartialRender, quiet: bool) -> Result<Display, Failure> {
         if self.exposure.exposure != Exposure::Auto {

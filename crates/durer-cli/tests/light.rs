@@ -45,8 +45,8 @@ fn photometric_light_has_its_specified_illuminance() {
     assert!(folder.expect_exit(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
 
-/// One point light of 1000 cd two units above the middle of a square: E = I cos^4 / h^2 below a
-/// lamp whose intensity falls with the cosine.
+/// Measures a square two units below a light of 1000 cd, whose intensity falls with the cosine:
+/// E = I cos^4 / h^2.
 #[test]
 fn grids_have_figures_lists_plans_and_error_targets() {
     let folder = lit();
@@ -56,7 +56,7 @@ fn grids_have_figures_lists_plans_and_error_targets() {
     let values: Vec<f64> =
         output.out.lines().skip(1).map(|row| row.split(',').nth(6).unwrap().parse().unwrap()).collect();
     assert_eq!(values.len(), 81);
-    // The cell in the middle lies straight below the lamp.
+    // The cell in the middle lies straight below the light.
     assert!((values[40] - 250.0).abs() < 0.1, "{}", values[40]);
     let (min, sum) = (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().sum::<f64>());
     let figures = format!("U0 {:.3}, U1 {:.3}", min / (sum / 81.0), min / 250.0);
