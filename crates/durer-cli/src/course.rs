@@ -223,6 +223,7 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     Ok(Job {
         width,
         height,
+        device: None,
         seed: arguments.number("--seed")?.unwrap_or(0),
         sampling: match odd {
             Some(OddSize::Threefold) => Sampling::Course2004 { sampler: Sampler::Random, samples: 1, filter: None },

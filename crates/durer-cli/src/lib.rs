@@ -7,6 +7,7 @@ mod compare;
 mod convert;
 mod course;
 mod denoise;
+mod device;
 mod diagrams;
 mod display;
 mod explain;

@@ -4,6 +4,7 @@ mod integrator;
 mod job;
 
 use crate::denoise::Denoiser;
+use crate::device::DeviceChoice;
 use crate::display::DisplayArgs;
 use crate::scene_defaults::SceneDefaultsArgs;
 use clap::Args;
@@ -122,6 +123,17 @@ pub struct ViewArgs {
 /// Options for threads, time and saved work
 #[derive(Args)]
 pub struct WorkArgs {
+    /// Processor that computes the colours: cpu, gpu, or auto (gpu if it can render the scene, else
+    /// cpu). Parts from different devices do not merge; see docs/gpu.md
+    #[arg(
+        long,
+        value_name = "DEVICE",
+        default_value = "cpu",
+        hide_default_value = true,
+        hide_possible_values = true,
+        value_enum
+    )]
+    pub device: DeviceChoice,
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]
     pub threads: Option<u16>,
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096), help = doc("tile"))]

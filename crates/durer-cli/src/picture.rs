@@ -9,7 +9,7 @@ use crate::output::{STANDARD_OUTPUT, Target, with_suffix};
 use crate::report::rejected;
 use crate::stats::StageTimer;
 use crate::terminal::{print_error_line, print_line};
-use crate::{check, diagrams, job, large, output, progress};
+use crate::{check, device, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
 use durer::render::{
@@ -101,7 +101,7 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     let mut stages = StageTimer::start();
     let scene = read(&args.scene, &options, args.quiet, &mut registry)?;
     stages.end_stage("reading");
-    let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
+    let mut job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     let window = job.window();
     let mut needed = PartialRender::bytes_needed(&job, shard);
     let bands = match &target {
@@ -128,6 +128,12 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     if !args.quiet {
         job::warn(&job, &compiled.world);
     }
+    let blocker = match (&bands, pixel) {
+        (Some(_), _) => Some("a picture larger than the memory"),
+        (_, Some(_)) => Some("--pixel"),
+        _ => None,
+    };
+    let mut gpu = device::open(args.work.device, &mut job, &compiled.world, blocker, args.quiet)?;
     let control = Arc::new(Control {
         threads,
         tile_size: args.work.tile,
@@ -162,7 +168,8 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     }
     let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(from_render_error)?)?;
     let stop = progress::watch(&control, args.quiet, || {
-        part.render(&compiled.world, &control, &mut |part, moment| autosave.watch(part, moment))
+        let mut watch = |part: &PartialRender, moment| autosave.watch(part, moment);
+        device::render(gpu.as_mut(), &part, &compiled.world, &control, &mut watch)
     })
     .map_err(from_render_error)?;
     stages.end_stage("rendering");

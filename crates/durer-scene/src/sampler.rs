@@ -120,6 +120,11 @@ impl SampleId {
         SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
     }
 
+    /// Returns the hash of the seed and the pixel, from which other generators can derive numbers.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
     /// Returns the identifier of another sample of the same pixel.
     pub fn with_sample(self, sample: u32) -> Self {
         SampleId { sample, ..self }

@@ -12,7 +12,7 @@ const LAYERS: [&[&str]; 10] = [
     &["durer-image"],
     &["durer-scene"],
     &["durer-formats", "durer-render"],
-    &["durer-teach"],
+    &["durer-gpu", "durer-teach"],
     &["durer"],
     &["durer-session"],
     &["durer-live", "durer-wasm"],

@@ -49,6 +49,9 @@ pub enum RenderError {
     /// The system does not have enough memory for the render.
     #[error("rendering needs about {} of memory, but the system has less", format_bytes_up(*.0))]
     NoMemory(u64),
+    /// A graphics device failed, or the part belongs to another device.
+    #[error("{0}")]
+    Device(String),
     /// The saved part belongs to another scene.
     #[error("this part belongs to a different scene")]
     OtherScene,

@@ -88,6 +88,10 @@ pub struct Job {
     pub height: u32,
     /// Rectangle to render, or `None` for the full picture.
     pub crop: Option<PixelRect>,
+    /// Name of the graphics device that computes the colour samples; `None` for the CPU. Devices
+    /// round differently, so the parts of a picture must come from the same device.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Sampling method for the colour picture.
@@ -147,6 +151,7 @@ impl Default for Job {
             width: 512,
             height: 512,
             crop: None,
+            device: None,
             seed: 0,
             sampling: Sampling::Center,
             noise: None,

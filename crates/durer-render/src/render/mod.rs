@@ -52,6 +52,6 @@ pub use pictures::Rendered;
 pub use profile::{Profile, profile};
 pub use progressive::{Progress, ProgressiveRender};
 pub use replay::replay;
-pub use run::{RenderEvent, RenderOutcome, render};
+pub use run::{CameraRay, RayDevice, RenderEvent, RenderOutcome, TracedRay, render};
 pub use samples::sample_places;
 pub use saved::PartError;

@@ -21,6 +21,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
+mod device;
+
+pub use device::{CameraRay, RayDevice, TracedRay};
+
 /// Default width and height of a tile in pixels.
 const TILE: u32 = 16;
 /// Default width and height of a tile if samples affect several pixels, so that a tile needs
@@ -84,6 +88,12 @@ pub(super) fn render_all(world: &World, job: &Job, control: &Control) -> Result<
 }
 
 impl PartialRender {
+    /// Returns an error unless the part belongs to the world.
+    fn check_scene(&self, world: &World) -> Result<(), RenderError> {
+        let is_same = self.scene == world.digest() && self.display == world.display_rules();
+        if is_same { Ok(()) } else { Err(RenderError::OtherScene) }
+    }
+
     /// Returns the numbers of samples at which the passes end.
     fn ends(&self, until: RunLimit) -> Box<dyn Iterator<Item = u32>> {
         match until {
@@ -119,8 +129,9 @@ impl PartialRender {
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
         until: RunLimit,
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.display != world.display_rules() {
-            return Err(RenderError::OtherScene);
+        self.check_scene(world)?;
+        if let Some(device) = &self.job.device {
+            return Err(RenderError::Device(format!("this part was rendered on {device}, not on the CPU")));
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile_size.unwrap_or(usual_tile(&self.job)));
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
@@ -295,15 +306,20 @@ impl Work<'_> {
         if part.job.adaptive && end > pilot(part.job.sampling.samples()) && !part.allocate() {
             return;
         }
+        let tiles = part.blocks.tiles(self.open_blocks(end, gain).into_iter(), self.tile);
+        self.for_each_tile(&tiles, alone, |tile, at| {
+            if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
+        });
+    }
+
+    /// Returns the blocks that need samples up to `end`.
+    fn open_blocks(&self, end: u32, gain: f32) -> Vec<usize> {
+        let part = self.part;
         let open = |(index, block): (usize, &BlockSamples)| {
             let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
             wanted.then_some(index)
         };
-        let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
-        let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
-        self.for_each_tile(&tiles, alone, |tile, at| {
-            if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
-        });
+        part.state().samples.iter().enumerate().filter_map(open).collect()
     }
 
     /// Adds samples to the blocks of a tile.

@@ -62,6 +62,11 @@ impl Tables {
         }
     }
 
+    /// Returns the boundary of an opaque base.
+    pub fn opaque_boundary(&self) -> &DielectricAlbedo {
+        &self.opaque
+    }
+
     /// Computes the tables that the material can use, on all threads, so that no render thread has
     /// to compute them.
     pub fn prepare(&self, m: &PrincipledMaterial) {

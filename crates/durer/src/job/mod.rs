@@ -337,6 +337,7 @@ impl RenderJob {
             width,
             height,
             crop: crop.map(|(left, top, width, height)| PixelRect { left, top, width, height }),
+            device: None,
             seed: self.seed.unwrap_or(0),
             sampling: self.sampling(context, default_samples)?,
             noise: self.noise_threshold,

@@ -314,6 +314,15 @@ impl LightSampler {
         self.sources = sources;
     }
 
+    /// Iterates over the emissive surfaces that light sampling can choose, in scene order: by object,
+    /// then by part. An object has either all its parts in the list or none.
+    pub fn area_lights(&self) -> impl Iterator<Item = &AreaLight> {
+        self.in_scene_order().filter_map(|entry| match entry {
+            LightEntry::Area(area) => Some(area),
+            LightEntry::Light(_) => None,
+        })
+    }
+
     /// Iterates over the emitters in scene order.
     fn in_scene_order(&self) -> impl Iterator<Item = &LightEntry> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
