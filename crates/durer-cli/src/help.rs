@@ -49,7 +49,7 @@ const TOPICS: &[(&str, &[&str])] = &[
         ],
     ),
     ("Animation", &["frames", "fps", "turntable"]),
-    ("Speed", &["threads", "accel", "grid", "tile"]),
+    ("Speed", &["device", "threads", "accel", "grid", "tile"]),
 ];
 
 /// Shared options that `--help` shows.
