@@ -76,8 +76,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// Replaces line breaks as well as the characters that [`printable`] replaces, so that the result is
-/// a single line.
+/// Replaces line breaks as well as the characters that [`printable`] replaces, so that the result
+/// is a single line.
 pub fn printable_line(text: &str) -> String {
     printable(text).replace('\n', "\\n")
 }

@@ -138,13 +138,13 @@ fn info_of_a_luminaire() {
     let angles: Vec<String> = (0..=90).map(|angle| angle.to_string()).collect();
     let candela: Vec<String> =
         (0..=90).map(|angle| (1000.0 * durer::math::fp::sin_cos_degrees(f64::from(angle)).1).to_string()).collect();
-    let lamp = format!(
+    let file = format!(
         "IESNA:LM-63-2002\n[MANUFAC] Test \u{1b}[2J\n[LUMINAIRE] Panel <1>\nTILT=NONE\n1 4000 1 91 1 1 2 0 0 0\n1 1 40\n{}\n0\n{}\n",
         angles.join(" "),
         candela.join(" ")
     );
-    folder.write("lamp.ies", &lamp);
-    let text = folder.expect_exit(0, "info lamp.ies --polar lamp.svg").out;
+    folder.write("panel.ies", &file);
+    let text = folder.expect_exit(0, "info panel.ies --polar panel.svg").out;
     for line in [
         "luminaire    Panel <1>\n",
         "format       IES LM-63, type C, 91 vertical and 1 horizontal angles\n",
@@ -153,18 +153,18 @@ fn info_of_a_luminaire() {
         "power        40.0 W; luminous efficacy 78.5 lm/W\n",
         "peak         1000.0 cd at vertical angle 0, horizontal angle 0\n",
         "beam         120.0 degrees in plane 0-180, 120.0 degrees in plane 90-270 (half of the maximum)\n",
-        "wrote lamp.svg\n",
+        "wrote panel.svg\n",
     ] {
         assert!(text.contains(line), "{line}\n{text}");
     }
     assert!(!text.contains('\u{1b}'));
-    let svg = std::fs::read_to_string(folder.path("lamp.svg")).unwrap();
+    let svg = std::fs::read_to_string(folder.path("panel.svg")).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("Panel &lt;1&gt;") && svg.ends_with("</svg>\n"));
-    let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info lamp.ies --json").out).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info panel.ies --json").out).unwrap();
     assert!((json["efficacy_lm_per_w"].as_f64().unwrap() - 78.54).abs() < 0.02);
-    folder.expect_failure(2, "info scene.txt --polar lamp.svg", &["--polar needs a photometric file"]);
+    folder.expect_failure(2, "info scene.txt --polar panel.svg", &["--polar needs a photometric file"]);
     folder.expect_failure(2, "info none.ies", &["none.ies"]);
-    folder.write("broken.ies", lamp.replace("TILT=NONE", ""));
+    folder.write("broken.ies", file.replace("TILT=NONE", ""));
     folder.expect_failure(2, "info broken.ies", &["broken.ies:1:1", "TILT="]);
-    folder.expect_failure(2, "info lamp.ies --polar lamp.ies", &["lamp.ies"]);
+    folder.expect_failure(2, "info panel.ies --polar panel.ies", &["panel.ies"]);
 }

@@ -12,8 +12,8 @@ const BINS: usize = 16;
 /// Depth beyond which nodes are split in half, so that no tree is deeper than [`MAX_DEPTH`].
 const MAX_SAH_DEPTH: u32 = MAX_DEPTH / 2;
 
-/// Appends the tree over some boxes to `nodes`. Returns its root, or [`NONE`] without boxes, and the
-/// numbers of the boxes in the order of the leaves. A leaf refers to at most `leaf` consecutive
+/// Appends the tree over some boxes to `nodes`. Returns its root, or [`NONE`] without boxes, and
+/// the numbers of the boxes in the order of the leaves. A leaf refers to at most `leaf` consecutive
 /// places of that order, counted from `base`.
 pub fn build(boxes: &[Aabb], base: u32, leaf: usize, nodes: &mut Vec<Node>) -> (u32, Vec<u32>) {
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();

@@ -1,4 +1,4 @@
-//! What the device can render, and what a scene and a job need.
+//! Features that the device can render, and those that a scene and a job need.
 //!
 //! Every feature that matters to the device is a row of the table `features!`. The refusals, the
 //! choice of `--device auto` and the table in `docs/gpu.md` all come from it.

@@ -4,8 +4,8 @@
 //! declaration is generated from that list by [`declarations`]. A test compares the offsets of all
 //! fields with those that naga computes.
 //!
-//! A `vec3<f32>` is aligned to 16 bytes in WGSL. Every [`Vector`](VECTOR) is therefore followed by a
-//! field of four bytes.
+//! A `vec3<f32>` is aligned to 16 bytes in WGSL. Every [`Vector`](VECTOR) is therefore followed by
+//! a field of four bytes.
 
 use bytemuck::{Pod, Zeroable};
 use std::mem::{offset_of, size_of};
@@ -269,8 +269,8 @@ shared! {
 
     /// Row of a table of albedos for one cosine.
     AlbedoRow {
-        /// Reflectance of the boundary, the share of the light that single scattering at the boundary
-        /// keeps, and that of facets that reflect all light.
+        /// Reflectance of the boundary, the share of the light that single scattering at the
+        /// boundary keeps, and that of facets that reflect all light.
         values: row,
     }
 

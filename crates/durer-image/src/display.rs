@@ -1,4 +1,5 @@
-//! Conversion of linear colours to integer values by exposure, tone mapping, and a transfer function.
+//! Conversion of linear colours to integer values by exposure, tone mapping, and a transfer
+//! function.
 
 use super::Transfer;
 use crate::{Color, LUMINANCE};

@@ -100,8 +100,8 @@ pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
 }
 
-/// Returns true if a word cannot be a name because it begins a statement or a block. Names of fields,
-/// such as `base`, can be names.
+/// Returns true if a word cannot be a name because it begins a statement or a block. Names of
+/// fields, such as `base`, can be names.
 pub(super) fn is_reserved(word: &str) -> bool {
     begins_block(word) || GRAMMAR.iter().any(|(reserved, _)| *reserved == word)
 }

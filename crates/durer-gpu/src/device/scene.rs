@@ -19,8 +19,8 @@ use wgpu::{
 
 /// Largest number of rays of a dispatch.
 const MOST_RAYS: usize = 1 << 20;
-/// Number of rays of the first dispatch. Later ones take about [`GOAL`], so that no driver considers
-/// the device as hung.
+/// Number of rays of the first dispatch. Later ones take about [`GOAL`], so that no driver
+/// considers the device as hung.
 const FIRST_RAYS: usize = 1 << 12;
 const GOAL: Duration = Duration::from_millis(100);
 

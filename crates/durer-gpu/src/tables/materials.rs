@@ -76,7 +76,7 @@ fn with_principled(material: Material, principled: &Principled, albedos: &mut Ve
     let roughness = m.specular_roughness;
     let ggx = Ggx::new(roughness, 0.0);
     let first_albedo = albedos.len() as u32;
-    // A mirror needs no table, which would be computed in vain.
+    // A mirror needs no table.
     if !ggx.is_smooth() {
         let row = |i: u32| {
             let root = i as f32 / (ALBEDO_ROWS - 1) as f32;

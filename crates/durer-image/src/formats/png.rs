@@ -1,5 +1,5 @@
-//! Portable Network Graphics format, with 8 or 16 bits per channel, lossless compression, and alpha for
-//! layers with coverage.
+//! Portable Network Graphics format, with 8 or 16 bits per channel, lossless compression, and
+//! alpha for layers with coverage.
 
 use super::{
     ChannelBits, Depth, Format, ImageError, ImageHeader, Raster, RowFormat, RowLayout, RowWriter, codec, rows,

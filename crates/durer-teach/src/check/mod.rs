@@ -71,7 +71,16 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
     (
         "bad-place",
-        &["camera-away", "camera-inside", "all-missed", "unseen", "light-blocked", "lamp-turned", "too-dark"],
+        &[
+            "camera-away",
+            "camera-inside",
+            "all-missed",
+            "unseen",
+            "light-blocked",
+            "lamp-blocked",
+            "lamp-turned",
+            "too-dark",
+        ],
     ),
     ("ALPHA_CUTOFF", &["not-there"]),
     ("black-light", &["same-color", "too-dark", "one-color"]),

@@ -63,8 +63,8 @@ fn is_first(world: &World, ray: &Ray, number: u32) -> bool {
     world.hides_backs() && world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
 }
 
-/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it. Path tracing
-/// ignores such backs.
+/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it. Path
+/// tracing ignores such backs.
 pub(super) fn past_hidden_backs(world: &World, mut ray: Ray) -> Ray {
     // The loop limits the number of layers.
     for _ in 0..64 {

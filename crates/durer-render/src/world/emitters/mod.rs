@@ -314,8 +314,8 @@ impl LightSampler {
         self.sources = sources;
     }
 
-    /// Iterates over the emissive surfaces that light sampling can choose, in scene order: by object,
-    /// then by part. An object has either all its parts in the list or none.
+    /// Iterates over the emissive surfaces that light sampling can choose, in scene order: by
+    /// object, then by part. An object has either all its parts in the list or none.
     pub fn area_lights(&self) -> impl Iterator<Item = &AreaLight> {
         self.in_scene_order().filter_map(|entry| match entry {
             LightEntry::Area(area) => Some(area),

@@ -21,7 +21,7 @@ pub struct PhotometricSummary {
     /// in degrees: in the plane through the horizontal angles 0 and 180, and in the plane through
     /// 90 and 270.
     pub beam_angles: [f64; 2],
-    /// The same for a tenth of the maximum intensity.
+    /// Angles as in `beam_angles`, for a tenth of the maximum intensity.
     pub field_angles: [f64; 2],
 }
 
