@@ -32,11 +32,10 @@ fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
     let commands = lines.filter_map(|line| line.strip_prefix("cargo ").unwrap_or(line).strip_prefix("durer "));
-    // A server runs until it is stopped, and `durer-live` has its own tests.
-    commands
-        .filter(|command| !command.starts_with("live ") && *command != "lesson monday.md")
-        .map(str::to_string)
-        .collect()
+    // A server runs until it is stopped, and `--device gpu` needs a graphics processor. Both have
+    // their own tests.
+    let has_own_tests = |command: &str| command.starts_with("live ") || command.contains("--device gpu");
+    commands.filter(|command| !has_own_tests(command) && *command != "lesson monday.md").map(str::to_string).collect()
 }
 
 /// Files that pages refer to but do not create. `scene.txt` and `model.glb` are generated from a
