@@ -101,7 +101,7 @@ fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
     let (mut looked, mut covered) = (0, 0);
     for &other in &others {
         let rays = points(&objects[other]).into_iter().flat_map(|point| rays_to(scene_probe, point));
-        let seen = rays.map(|ray| past_hidden_backs(scene_probe.world(), ray));
+        let seen = rays.map(|ray| past_hidden_backs(&scene_probe.input, ray));
         for hit in seen.filter_map(|ray| scene_probe.world().closest(&ray, &mut ())) {
             looked += usize::from(hit.object as usize == other || hit.object as usize == front);
             covered += usize::from(hit.object as usize == front);

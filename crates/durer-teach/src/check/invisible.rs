@@ -122,7 +122,7 @@ fn turned_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         let (world, object) = (scene_probe.world(), &scene_probe.world().objects()[number]);
         // A wall that lets the camera look into a room hides its back on purpose.
         let rays = points(object).into_iter().flat_map(|point| rays_to(scene_probe, point));
-        let seen = rays.filter_map(|ray| world.closest(&past_hidden_backs(world, ray), &mut ()));
+        let seen = rays.filter_map(|ray| world.closest(&past_hidden_backs(&scene_probe.input, ray), &mut ()));
         if seen.into_iter().any(|hit| world.objects()[hit.object as usize].bounds().is_some()) {
             return None;
         }
@@ -169,32 +169,18 @@ fn negative_scale(scene_probe: &SceneProbe, number: u32) -> Option<(Span, String
     None
 }
 
-/// Maximum number of triangles of a mesh that is searched for edges.
+/// Maximum number of triangles of a mesh that is searched for open edges.
 const MAX_TRIANGLES: usize = 20_000;
-
-/// Returns true if a mesh is open: some edge belongs to an odd number of its triangles.
-fn has_edge(object: &Object) -> bool {
-    let Geometry::Mesh(tree) = &object.geometry else { return false };
-    let mut odd = std::collections::HashSet::new();
-    for triangle in 0..tree.mesh.len().min(MAX_TRIANGLES) {
-        let corners = tree.mesh.corners(triangle as u32).map(|corner| corner.to_array().map(f32::to_bits));
-        for i in 0..3 {
-            let (a, b) = (corners[i], corners[(i + 1) % 3]);
-            let edge = if a < b { (a, b) } else { (b, a) };
-            if !odd.remove(&edge) {
-                odd.insert(edge);
-            }
-        }
-    }
-    tree.mesh.len() <= MAX_TRIANGLES && !odd.is_empty()
-}
 
 /// Returns true if the centre of one object is inside another.
 fn contains_center(scene_probe: &SceneProbe, outer: u32, inner: u32) -> bool {
-    if has_edge(&scene_probe.world().objects()[outer as usize]) {
+    let objects = scene_probe.world().objects();
+    // An open mesh contains nothing.
+    if matches!(&objects[outer as usize].geometry, Geometry::Mesh(tree) if tree.mesh.len() <= MAX_TRIANGLES && !tree.is_closed())
+    {
         return false;
     }
-    let middle = scene_probe.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
+    let middle = objects[inner as usize].bounds().map(|bounds| bounds.center());
     middle.is_some_and(|middle| super::containment::containing_objects(scene_probe.world(), middle).contains(&outer))
 }
 

@@ -117,10 +117,7 @@ impl<'a> ProbeGrid<'a> {
         };
         let pixels: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
         let probe = |&place: &(u32, u32)| {
-            let mut ray = center_ray(input.world, &raster, place)?;
-            if input.job.method.path_options().is_some() {
-                ray = super::visibility::past_hidden_backs(input.world, ray);
-            }
+            let ray = super::visibility::past_hidden_backs(input, center_ray(input.world, &raster, place)?);
             let at =
                 |i: u32, of: u32, size: u32| ((2 * u64::from(i) + 1) * u64::from(size) / (2 * u64::from(of))) as u32;
             let pixel = (at(place.0, columns, width), at(place.1, rows, height));

@@ -204,17 +204,16 @@ pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
     if turned && angle < 60.0 {
         return Vec::new();
     }
-    diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off the viewing direction");
-    let moved = super::transforms::moved_out_of_view(scene_probe);
-    let first = moved.as_ref().map_or_else(|| nearest(scene_probe), |(_, words)| words.clone() + "; or ");
     if matches!(world.camera(), Camera::Projective(_)) {
         let help = match angle > 90.0 {
             true => "the matrix looks away from the scene: check the signs of its rows",
             false => "check the matrix of the camera",
         };
-        let diagnostic = Diagnostic { message: "the camera looks past everything".into(), ..diagnostic };
         return vec![Finding::from(diagnostic.help(help).at(span)).affecting_whole_picture(true)];
     }
+    diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off the viewing direction");
+    let moved = super::transforms::moved_out_of_view(scene_probe);
+    let first = moved.as_ref().map_or_else(|| nearest(scene_probe), |(_, words)| words.clone() + "; or ");
     let mut help = format!("{first}turn the camera: `direction {}`", vector(to));
     let as_point = pose.direction - pose.center;
     if degrees(as_point, to) < 20.0 && angle > 20.0 {

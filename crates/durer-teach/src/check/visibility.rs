@@ -1,8 +1,8 @@
 //! Visibility of each object: in the picture, hidden by another object, or outside the picture.
 
-use super::probes::ProbeGrid;
+use super::probes::{CheckInput, ProbeGrid};
 use super::shapes::triangle;
-use durer_render::world::{Geometry, Object, World};
+use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
@@ -47,10 +47,10 @@ fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     }
     let mut sight = Visibility::Outside;
     for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
-        let seen = past_hidden_backs(grid.world(), ray);
+        let seen = past_hidden_backs(&grid.input, ray);
         match grid.world().closest(&seen, &mut ()) {
             Some(hit) if hit.object == number => return Visibility::Visible,
-            _ if is_first(grid.world(), &ray, number) => return Visibility::TurnedAway,
+            _ if is_first(&grid.input, &ray, number) => return Visibility::TurnedAway,
             Some(hit) => sight = Visibility::Hidden(hit.object),
             None => {}
         }
@@ -59,18 +59,23 @@ fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
 }
 
 /// Returns true if a ray hits an object first, on its visible or on its hidden side.
-fn is_first(world: &World, ray: &Ray, number: u32) -> bool {
-    world.hides_backs() && world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
+fn is_first(input: &CheckInput, ray: &Ray, number: u32) -> bool {
+    hides_backs(input) && input.world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
 }
 
-/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it. Path
-/// tracing ignores such backs.
-pub(super) fn past_hidden_backs(world: &World, mut ray: Ray) -> Ray {
+/// Returns true if the render ignores the backs of some surfaces. Only path tracing does.
+fn hides_backs(input: &CheckInput) -> bool {
+    input.world.hides_backs() && input.job.method.path_options().is_some()
+}
+
+/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it.
+pub(super) fn past_hidden_backs(input: &CheckInput, mut ray: Ray) -> Ray {
+    if !hides_backs(input) {
+        return ray;
+    }
+    let world = input.world;
     // The loop limits the number of layers.
     for _ in 0..64 {
-        if !world.hides_backs() {
-            break;
-        }
         let Some(hit) = world.closest(&ray, &mut ()) else { break };
         if !world.is_hidden(ray.dir, &world.interaction(ray, hit)) {
             break;
