@@ -4,14 +4,14 @@ use super::rules::{self, is_nodes};
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::describe::{DescribedKind as _, Value};
 use durer_scene::dialect::{DialectRules, Quirk};
-use durer_scene::light::{Illuminate as _, Light};
+use durer_scene::light::{Illuminate as _, Light, PHOTOMETRIC_FIELDS};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Scene;
 
 /// Returns the field that sets the strength of a light in photometric units, if it is 0.
 fn zero_strength(light: &Light) -> Option<&'static str> {
     let fields = light.fields().iter().enumerate();
-    let mut fields = fields.filter(|(_, field)| ["candela", "lumens", "lux"].contains(&field.name));
+    let mut fields = fields.filter(|(_, field)| PHOTOMETRIC_FIELDS.contains(&field.name));
     fields.find(|(i, _)| light.get(*i) == Some(Value::Float(0.0))).map(|(_, field)| field.name)
 }
 

@@ -19,6 +19,9 @@ pub use photometric::{PhotometricLight, PhotometricProfile, PhotometricSummary, 
 pub use point::PointLight;
 pub use spot::{Fade, SpotLight};
 
+/// Fields that set the strength of a light in photometric units. A light has at most one of them.
+pub const PHOTOMETRIC_FIELDS: [&str; 3] = ["candela", "lumens", "lux"];
+
 macro_rules! delegate {
     ($($variant:ident),+) => {
         impl Illuminate for Light {

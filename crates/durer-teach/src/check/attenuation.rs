@@ -7,7 +7,7 @@ use super::shapes::point;
 use super::verdict::{LightVerdict, attenuation};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::Dialect;
-use durer_scene::light::Illuminate as _;
+use durer_scene::light::{Illuminate as _, PHOTOMETRIC_FIELDS};
 use durer_scene::math::Vec3;
 
 /// Reports lights whose light is too weak when it arrives at the visible surfaces.
@@ -83,7 +83,7 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// Returns the field that sets the strength of a light in photometric units, and the span of its
 /// value.
 pub(super) fn strength(scene_probe: &SceneProbe, light: Span) -> Option<(&'static str, Span)> {
-    ["candela", "lumens", "lux"].into_iter().find_map(|field| Some((field, scene_probe.field_span(light, &[field])?)))
+    PHOTOMETRIC_FIELDS.into_iter().find_map(|field| Some((field, scene_probe.field_span(light, &[field])?)))
 }
 
 /// Returns true if different attenuation coefficients would give the light a usual brightness at

@@ -8,7 +8,7 @@ use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
 use durer_diag::{Diagnostic, Severity};
-use durer_scene::light::Illuminate as _;
+use durer_scene::light::{Illuminate as _, PHOTOMETRIC_FIELDS};
 use durer_scene::math::{Color, fp};
 
 /// Values above `MAX_UNCLIPPED` are clipped to white. Above `FAR_ABOVE_WHITE`, most of the shading
@@ -131,7 +131,7 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
             let diagnostic = diagnostic.at(value).label("this light is too strong").fix(value, text);
             return vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())];
         }
-        let unit = scene_probe.field_span(span, &["candela", "lumens", "lux"]);
+        let unit = scene_probe.field_span(span, &PHOTOMETRIC_FIELDS);
         let value = unit.or_else(|| scene_probe.field_span(span, &["color"]));
         let strength = unit.and_then(|unit| scene_probe.text(unit).trim().parse::<f32>().ok());
         let less = strength.map_or_else(|| vector(light.color() * factor), |strength| number(strength * factor));
