@@ -2,6 +2,7 @@
 
 use super::{PhotometricProfile, ProfileKind};
 use crate::math::{Vec3, fp};
+use std::f64::consts::PI;
 
 /// Step of the angles at which intensities are sampled, in degrees.
 const STEP: f64 = 0.25;
@@ -75,17 +76,17 @@ impl PhotometricProfile {
         let (rows, columns) = (720_u32, 360_u32);
         let (mut sum, mut down) = (0.0, 0.0);
         for i in 0..rows {
+            if i == rows / 2 {
+                down = sum;
+            }
             let (sin, cos) = fp::sin_cos_degrees((f64::from(i) + 0.5) * 180.0 / f64::from(rows));
-            let mut ring = 0.0;
             for j in 0..columns {
                 let (s, c) = fp::sin_cos_degrees((f64::from(j) + 0.5) * 360.0 / f64::from(columns));
-                ring += f64::from(self.at(Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32))) * sin;
+                sum += f64::from(self.at(Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32))) * sin;
             }
-            sum += ring;
-            down += if i < rows / 2 { ring } else { 0.0 };
         }
-        let scale = 2.0 * std::f64::consts::PI * std::f64::consts::PI / f64::from(rows * columns);
-        (sum * scale, down * scale)
+        let flux = |sum: f64| sum * 2.0 * PI * PI / f64::from(rows * columns);
+        (flux(sum), flux(down))
     }
 
     /// Luminous flux in lumens. Apart from the sine factor, the result is exact for a profile that
