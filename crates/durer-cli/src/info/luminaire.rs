@@ -1,12 +1,13 @@
 //! Summary of a photometric file: flux, efficacy, peak, beam and field angles.
 
 use super::{InfoArgs, polar};
-use crate::failure::{Failure, invalid_input};
+use crate::failure::Failure;
 use crate::file_registry::FileRegistry;
 use crate::output::print_written;
 use crate::report;
 use crate::terminal::{print_line, printable_line};
 use durer::diag::{Diagnostics, Files};
+use durer::format::folder::FolderSource;
 use durer::format::photometry::{Luminaire, read_luminaire};
 use durer::image::save_all;
 use durer::light::PhotometricSummary;
@@ -23,17 +24,13 @@ pub fn is_photometric(path: &Path) -> bool {
 
 /// Runs `durer info` for a photometric file.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let (path, name) = (&args.scene, args.scene.display());
+    let (path, name) = (&args.scene, args.scene.display().to_string());
     let mut registry = FileRegistry::default();
     registry.register_input(path)?;
     let target = args.polar.as_ref().map(|polar| registry.register_output("--polar", polar)).transpose()?;
-    let size = std::fs::metadata(path).map_err(|error| invalid_input(format!("cannot read `{name}`: {error}")))?;
-    if !size.is_file() || size.len() > MAX_BYTES {
-        return Err(invalid_input(format!("`{name}` is not a regular file of at most {} MiB", MAX_BYTES >> 20)));
-    }
-    let bytes = std::fs::read(path).map_err(|error| invalid_input(format!("cannot read `{name}`: {error}")))?;
+    let bytes = FolderSource::new(".").budget(MAX_BYTES).read_path(path, &name).map_err(report::unreadable)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let file = files.add(name.to_string(), bytes.clone().into());
+    let file = files.add(name, bytes.clone());
     let luminaire = read_luminaire(&bytes, file, &mut diagnostics);
     report::print(&files, &diagnostics, args.json);
     let Some(luminaire) = luminaire else { return Err(Failure::Input(None)) };

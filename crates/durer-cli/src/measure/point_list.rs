@@ -2,6 +2,8 @@
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
+use crate::report;
+use durer::format::folder::FolderSource;
 use durer::math::Vec3;
 use std::path::Path;
 
@@ -12,13 +14,10 @@ const MAX_BYTES: u64 = 256 << 20;
 /// empty lines and lines that begin with `#`.
 pub fn read(path: &Path, registry: &mut FileRegistry) -> Result<Vec<(Vec3, Option<Vec3>)>, Failure> {
     registry.register_input(path)?;
-    let cannot = |why: String| invalid_input(format!("cannot read `{}`: {why}", path.display()));
-    let metadata = std::fs::metadata(path).map_err(|error| cannot(error.to_string()))?;
-    if !metadata.is_file() || metadata.len() > MAX_BYTES {
-        return Err(cannot(format!("it is not a regular file of at most {} MiB", MAX_BYTES >> 20)));
-    }
-    let text = std::fs::read_to_string(path).map_err(|error| cannot(error.to_string()))?;
-    parse(&text).map_err(|error| invalid_input(format!("{}:{error}", path.display())))
+    let name = path.display().to_string();
+    let bytes = FolderSource::new(".").budget(MAX_BYTES).read_path(path, &name).map_err(report::unreadable)?;
+    let text = str::from_utf8(&bytes).map_err(|error| invalid_input(format!("cannot read `{name}`: {error}")))?;
+    parse(text).map_err(|error| invalid_input(format!("{name}:{error}")))
 }
 
 fn parse(text: &str) -> Result<Vec<(Vec3, Option<Vec3>)>, String> {
