@@ -7,9 +7,9 @@ use super::course::stored_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{Cancelled, SampleCursor, SampleSource};
-use super::{BLOCK, Control, Job, Rendered, Shard, center_rays};
+use super::{BLOCK, Control, Job, PixelRect, Rendered, Shard, center_rays};
 use crate::clock::{Duration, Instant};
-use crate::film::PackedFilm;
+use crate::film::{Film, PackedFilm};
 use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
@@ -138,7 +138,9 @@ impl PartialRender {
         let stored = stored_bytes(&self.job, tile).saturating_mul(threads as u64);
         let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(stored);
         control.check_memory(needed)?;
-        let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
+        let stop = AtomicBool::new(control.cancel.load(Relaxed));
+        let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
+        let mut clock = Watcher::new(control, &stop, whole);
         let (all, done) = self.work();
         if done == 0 && !can_allocate(needed) {
             return Err(RenderError::NoMemory(needed));
@@ -149,19 +151,7 @@ impl PartialRender {
             control.total_work.store(all, Relaxed);
             control.done_work.store(done, Relaxed);
         }
-        let work = Work {
-            part: self,
-            world,
-            control,
-            samples: SampleSource::new(world, &self.job, &stop),
-            stop: &stop,
-            tile,
-            tiles: AtomicU64::new(0),
-            panicked: Mutex::new(None),
-        };
-        let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
-        let mut clock =
-            Watcher { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
+        let work = Work::new(self, world, control, &stop, tile);
         match pool {
             Some(pool) => pool.in_place_scope(|scope| {
                 let (finished, passes) = mpsc::channel();
@@ -192,13 +182,7 @@ impl PartialRender {
                 }
             }
         }
-        let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
-        Ok(match panicked {
-            Some(panicked) => RenderOutcome::Panicked(panicked),
-            None if !stop.load(Relaxed) => RenderOutcome::Finished,
-            None if clock.out_of_time => RenderOutcome::OutOfTime,
-            None => RenderOutcome::Cancelled,
-        })
+        Ok(work.outcome(clock.out_of_time))
     }
 }
 
@@ -218,7 +202,12 @@ struct Watcher<'a> {
     out_of_time: bool,
 }
 
-impl Watcher<'_> {
+impl<'a> Watcher<'a> {
+    fn new(control: &'a Control, stop: &'a AtomicBool, whole: bool) -> Self {
+        let start = Instant::now();
+        Watcher { start, last: start, pause: Duration::ZERO, control, stop, whole, out_of_time: false }
+    }
+
     /// Stops the render if it was cancelled or reached the time limit. Reports when a save is due.
     fn poll(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
@@ -256,6 +245,36 @@ impl Watcher<'_> {
     }
 }
 
+/// Block to which a pass adds samples.
+struct OpenBlock {
+    block: BlockSamples,
+    rect: PixelRect,
+    film: Film,
+    /// Film before the pass, if the variances of the pixels are computed from both films.
+    before: Option<Film>,
+    /// Number of samples of a pixel after the pass, as an average over the picture.
+    end: u32,
+}
+
+impl OpenBlock {
+    fn new(part: &PartialRender, index: usize, block: BlockSamples, end: u32) -> Self {
+        let (rect, samples) = (part.blocks.rect(index), part.job.sampling.samples());
+        let film = block.film(rect).unwrap_or_else(|| film_of(rect));
+        let is_half = part.job.adaptive && (block.to, end) == (half(samples), pilot(samples));
+        let before = is_half.then(|| film.clone());
+        OpenBlock { block, rect, film, before, end }
+    }
+
+    /// Returns the block after the pass, for which `rays` rays were traced.
+    fn finish(self, part: &PartialRender, rays: u64) -> BlockSamples {
+        let OpenBlock { mut block, rect, film, before, end } = self;
+        block.rays += rays;
+        block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
+        (block.to, block.film) = (end, Some(Arc::new(PackedFilm::new(film, part.packed_samples()))));
+        block
+    }
+}
+
 /// Function to call between tiles if there are no threads besides the calling thread.
 type PollFn<'a> = Option<&'a mut dyn FnMut()>;
 
@@ -272,7 +291,23 @@ struct Work<'a> {
     panicked: Mutex<Option<Panicked>>,
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    fn new(part: &'a PartialRender, world: &'a World, control: &'a Control, stop: &'a AtomicBool, tile: u32) -> Self {
+        let samples = SampleSource::new(world, &part.job, stop);
+        Work { part, world, control, samples, stop, tile, tiles: AtomicU64::new(0), panicked: Mutex::new(None) }
+    }
+
+    /// Returns how the render ended.
+    fn outcome(&self, out_of_time: bool) -> RenderOutcome {
+        let panicked = self.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match panicked {
+            Some(panicked) => RenderOutcome::Panicked(panicked),
+            None if !self.stop.load(Relaxed) => RenderOutcome::Finished,
+            None if out_of_time => RenderOutcome::OutOfTime,
+            None => RenderOutcome::Cancelled,
+        }
+    }
+
     /// Traces the centre rays that have not been traced yet.
     fn rays(&self, alone: PollFn) {
         let part = self.part;
@@ -325,24 +360,18 @@ impl Work<'_> {
     /// Adds samples to the blocks of a tile.
     fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Cancelled> {
         let part = self.part;
-        let (adaptive, samples) = (part.job.adaptive, part.job.sampling.samples());
         let mut finished_blocks = Vec::with_capacity(tile.len());
         let (mut taken, mut traced) = (0, 0);
-        for (&index, mut block) in tile.iter().zip(self.block_copies(tile)) {
-            let rect = part.blocks.rect(index);
-            let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
-            let is_half = adaptive && (block.to, end) == (half(samples), pilot(samples));
-            let before = is_half.then(|| film.clone());
+        for (&index, block) in tile.iter().zip(self.block_copies(tile)) {
+            let mut open = OpenBlock::new(part, index, block, end);
+            let (block, rect) = (&open.block, open.rect);
             let mut rays = RayCount::default();
             let range = |pixel| block.count(&part.job, pixel, block.to)..block.count(&part.job, pixel, end);
-            self.samples.add(&mut film, rect, range, at, &mut rays)?;
+            self.samples.add(&mut open.film, rect, range, at, &mut rays)?;
             let total = |end| block.total(&part.job, rect.pixels(), end);
             taken += total(end) - total(block.to);
             traced += rays.0;
-            block.rays += rays.0;
-            block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
-            (block.to, block.film) = (end, Some(Arc::new(PackedFilm::new(film, part.packed_samples()))));
-            finished_blocks.push(block);
+            finished_blocks.push(open.finish(part, rays.0));
         }
         self.store(tile, finished_blocks, taken, traced);
         Ok(())

@@ -7,19 +7,16 @@
 //! the same film.
 
 use super::{
-    BlockSamples, Control, PartialRender, RenderError, RenderEvent, RenderOutcome, RunLimit, SampleSource, TILE,
-    Watcher, Work, film_of, half, pilot, variances,
+    BlockSamples, Control, OpenBlock, PartialRender, RenderError, RenderEvent, RenderOutcome, RunLimit, TILE, Watcher,
+    Work, pilot,
 };
-use crate::clock::{Duration, Instant};
-use crate::film::PackedFilm;
 use crate::threads;
 use crate::world::World;
 use durer_scene::math::{Color, Ray};
 use durer_scene::sampler::SampleId;
 use rayon::ThreadPool;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Camera ray of a sample, with the sample's identity.
 #[derive(Clone, Copy, Debug)]
@@ -87,23 +84,12 @@ impl PartialRender {
             return Err(RenderError::Device("a device cannot render samples that affect several pixels".into()));
         }
         control.check_memory(PartialRender::bytes_needed(&self.job, self.shard))?;
-        let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
+        let stop = AtomicBool::new(control.cancel.load(Relaxed));
+        let mut clock = Watcher::new(control, &stop, !self.job.wants_samples());
         let (all, done) = self.work();
         control.total_work.store(all, Relaxed);
         control.done_work.store(done, Relaxed);
-        let work = Work {
-            part: self,
-            world,
-            control,
-            samples: SampleSource::new(world, &self.job, &stop),
-            stop: &stop,
-            tile: TILE,
-            tiles: AtomicU64::new(0),
-            panicked: Mutex::new(None),
-        };
-        let whole = !self.job.wants_samples();
-        let pause = Duration::ZERO;
-        let mut clock = Watcher { start, last: start, pause, control, stop: &stop, whole, out_of_time: false };
+        let work = Work::new(self, world, control, &stop, TILE);
         let pool = threads::pool(control.threads);
         installed(pool.as_ref(), || work.rays(None));
         for end in self.ends(RunLimit::End) {
@@ -112,13 +98,7 @@ impl PartialRender {
                 clock.passed(self, watch);
             }
         }
-        let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
-        Ok(match panicked {
-            Some(panicked) => RenderOutcome::Panicked(panicked),
-            None if !stop.load(Relaxed) => RenderOutcome::Finished,
-            None if clock.out_of_time => RenderOutcome::OutOfTime,
-            None => RenderOutcome::Cancelled,
-        })
+        Ok(work.outcome(clock.out_of_time))
     }
 }
 
@@ -210,20 +190,13 @@ impl Work<'_> {
 
     /// Adds the results of a block's samples to its film.
     fn add_plan(&self, plan: BlockPlan, results: &[TracedRay], end: u32) -> BlockSamples {
-        let (part, mut block) = (self.part, plan.block);
-        let (rect, samples) = (part.blocks.rect(plan.index), part.job.sampling.samples());
-        let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
-        let is_half = part.job.adaptive && (block.to, end) == (half(samples), pilot(samples));
-        let before = is_half.then(|| film.clone());
+        let mut open = OpenBlock::new(self.part, plan.index, plan.block, end);
         let mut colors = results.iter().map(|result| result.color);
         for (x, y, sample, weight, has_ray) in plan.samples {
             let color = if has_ray { colors.next() } else { None };
-            film.add_optional(x, y, sample, color, weight);
+            open.film.add_optional(x, y, sample, color, weight);
         }
-        block.rays += results.iter().map(|result| u64::from(result.rays)).sum::<u64>();
-        block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
-        (block.to, block.film) = (end, Some(Arc::new(PackedFilm::new(film, part.packed_samples()))));
-        block
+        open.finish(self.part, results.iter().map(|result| u64::from(result.rays)).sum())
     }
 }
 
