@@ -139,11 +139,12 @@ pub fn measure(
             (None, None) => samples.div_ceil(16).max(FIRST_PASS),
         };
         let end = samples.min(first.saturating_add(step));
-        let is_checked = error.is_some() && first >= FIRST_PASS && (path.photons.is_none() || first.is_power_of_two());
+        let is_checked = first >= FIRST_PASS && (path.photons.is_none() || first.is_power_of_two());
+        let target = error.filter(|_| is_checked);
         path.prepare(first);
         sums.par_iter_mut().zip(sensors).enumerate().for_each(|(number, (sums, sensor))| {
             // A sensor that has once reached the target has fewer samples than the pass assumes.
-            if sums.samples < first || is_checked && is_precise(sums, rare, error) {
+            if sums.samples < first || target.is_some_and(|target| is_precise(sums, rare, target)) {
                 return;
             }
             for sample in first..end {
@@ -163,9 +164,9 @@ pub fn measure(
 }
 
 /// Returns true if the relative standard error at a sensor has reached the target.
-fn is_precise(sums: &Sums, rare: f64, error: Option<f64>) -> bool {
+fn is_precise(sums: &Sums, rare: f64, target: f64) -> bool {
     let mean = sums.mean(rare);
-    mean.illuminance > 0.0 && error.is_some_and(|target| mean.error <= target * mean.illuminance)
+    mean.illuminance > 0.0 && mean.error <= target * mean.illuminance
 }
 
 #[cfg(test)]
