@@ -20,17 +20,9 @@ pub enum DeviceChoice {
 #[cfg(feature = "gpu")]
 pub type Device = durer_gpu::SceneBuffers;
 
-/// Graphics device, of which there is none without the feature `gpu`.
+/// Type without values, because only builds with the feature `gpu` have graphics devices.
 #[cfg(not(feature = "gpu"))]
 pub enum Device {}
-
-/// Reason for which the CPU renders instead of the graphics processor.
-fn refuse(choice: DeviceChoice, why: &str) -> Result<Option<Device>, Failure> {
-    match choice {
-        DeviceChoice::Gpu => Err(invalid_input(why)),
-        DeviceChoice::Cpu | DeviceChoice::Auto => Ok(None),
-    }
-}
 
 /// Returns the device for a job, and sets the job's device, or returns `None` for the CPU. Under
 /// `auto`, a note says why the CPU is used unless `quiet` is set. `blocker` is an option that only
@@ -51,11 +43,14 @@ pub fn open(
     };
     match opened {
         Ok(device) => Ok(Some(device)),
+        Err(why) if choice == DeviceChoice::Gpu => {
+            Err(invalid_input(format!("{why}: remove `--device gpu`, or use `--device auto`")))
+        }
         Err(why) => {
-            if choice == DeviceChoice::Auto && !quiet {
+            if !quiet {
                 crate::terminal::print_error_line(&format!("note: rendering on the CPU: {why}"));
             }
-            refuse(choice, &format!("{why}: remove `--device gpu`, or use `--device auto`"))
+            Ok(None)
         }
     }
 }

@@ -108,8 +108,8 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
 
 /// Parses a command line. Help is printed like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
-    let program = help::arrange(Cli::command(), words.iter().any(|word| word == "--help-all"));
-    let matches = program.clone().try_get_matches_from(&words);
+    let mut program = help::arrange(Cli::command(), words.iter().any(|word| word == "--help-all"));
+    let matches = program.try_get_matches_from_mut(&words);
     matches.and_then(|matches| Cli::from_arg_matches(&matches)).unwrap_or_else(|error| {
         let error = option_hints::with_hint(error, &words, &program);
         let (rendered, code) = (error.render(), u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
