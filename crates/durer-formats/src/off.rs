@@ -179,21 +179,15 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     let mut triangulator = Triangulator::new(bytes.len());
     let mut corners = Vec::new();
     for face in 0..faces {
-        let before = words.at;
-        let has_corners = words.next(false).is_none_or(|at| bytes[at].iter().all(u8::is_ascii_digit));
-        if face == 0 && !has_corners {
-            words.at = before;
-            let at = words.next(false)?;
-            let found = quoted(&bytes[at.clone()]);
-            let error =
-                report.error(at, format!("the number of corners of a face must be a whole number, found {found}"));
-            error.help = Some(format!(
-                "the header announces {pad} vertices: if this line is another vertex, the number in the header is too small"
-            ));
+        let Some((count, at)) = words.count(report, "the number of corners of a face") else {
+            // The first word after the vertices is not a count, so it may begin another vertex.
+            if let Some(error) = report.last().filter(|_| face == 0 && words.at < bytes.len()) {
+                error.help = Some(format!(
+                    "the header announces {pad} vertices: if this line is another vertex, the number in the header is too small"
+                ));
+            }
             return None;
-        }
-        words.at = before;
-        let (count, at) = words.count(report, "the number of corners of a face")?;
+        };
         corners.clear();
         if count > bytes.len() {
             report.error(at, format!("the file is too short for a face of {count} corners"));

@@ -98,6 +98,11 @@ impl Report {
         !self.diagnostics.is_empty() && self.diagnostics.iter().all(is_after)
     }
 
+    /// Returns the diagnostic that was added last, so that the caller can add help to it.
+    pub fn last(&mut self) -> Option<&mut Diagnostic> {
+        self.diagnostics.last_mut()
+    }
+
     /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
         self.diagnostics.len()
