@@ -255,13 +255,16 @@ fn extension(path: &str) -> Option<String> {
 
 /// Returns the conversion of a layer to integer values.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
-    match (layer.kind, options.display.transfer) {
-        // Applying a transfer function to data would falsify it. `Course`, which only truncates, is
-        // an exception, because the course applied it to all pictures.
-        (LayerKind::Data, Transfer::Srgb) => Display { bits: options.display.bits, ..Transfer::Linear.into() },
-        (LayerKind::Data, transfer) => Display { bits: options.display.bits, ..transfer.into() },
-        _ => options.display,
+    if layer.kind != LayerKind::Data {
+        return options.display;
     }
+    // Applying a transfer function to data would falsify it. `Course`, which only truncates, is an
+    // exception, because the course applied it to all pictures.
+    let transfer = match options.display.transfer {
+        Transfer::Srgb => Transfer::Linear,
+        transfer => transfer,
+    };
+    Display { bits: options.display.bits, ..transfer.into() }
 }
 
 /// Returns the 8-bit red, green, and blue values of a picture, starting with the top row. The
