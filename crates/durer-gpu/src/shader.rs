@@ -2,32 +2,12 @@
 
 use crate::layout;
 
+/// Names and sources of modules.
 macro_rules! modules {
-    ($($name:literal),+) => {
-        [$(($name, include_str!(concat!("wgsl/", $name, ".wgsl")))),+]
+    ($($name:literal),+ $(,)?) => {
+        &[$(($name, include_str!(concat!("wgsl/", $name, ".wgsl")))),+]
     };
 }
-
-const MODULES: [(&str, &str); 18] = modules![
-    "bindings",
-    "math",
-    "random",
-    "triangle",
-    "shapes",
-    "traverse",
-    "surface",
-    "noise",
-    "material",
-    "media",
-    "light",
-    "emitter",
-    "ggx",
-    "bsdf",
-    "principled",
-    "hits",
-    "whitted",
-    "path"
-];
 
 /// Compute kernel of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,15 +33,15 @@ impl Kernel {
         }
     }
 
-    /// Returns the names of the kernel's modules, in order.
-    fn modules(self) -> &'static [&'static str] {
+    /// Returns the names and the sources of the kernel's modules, in order.
+    fn modules(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Kernel::Hits => &["bindings", "math", "triangle", "shapes", "traverse", "hits"],
-            Kernel::Whitted => &[
+            Kernel::Hits => modules!["bindings", "math", "triangle", "shapes", "traverse", "hits"],
+            Kernel::Whitted => modules![
                 "bindings", "math", "triangle", "shapes", "traverse", "surface", "noise", "material", "media", "light",
                 "whitted",
             ],
-            Kernel::Path => &[
+            Kernel::Path => modules![
                 "bindings",
                 "math",
                 "random",
@@ -84,9 +64,8 @@ impl Kernel {
 
     /// Returns the WGSL source of the kernel.
     pub fn source(self) -> String {
-        let text = |name: &&str| MODULES.iter().find(|module| module.0 == *name).map_or("", |module| module.1);
-        let parts = self.modules().iter().map(text);
-        std::iter::once(layout::declarations()).chain(parts.map(String::from)).collect::<Vec<_>>().join("\n")
+        let parts = self.modules().iter().map(|module| module.1.to_string());
+        std::iter::once(layout::declarations()).chain(parts).collect::<Vec<_>>().join("\n")
     }
 }
 

@@ -63,17 +63,6 @@ impl Tables {
         tables
     }
 
-    /// Returns the size of all tables in bytes.
-    pub fn bytes(&self) -> u64 {
-        (size_of_val(&self.nodes[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.objects[..])
-            + size_of_val(&self.materials[..])
-            + size_of_val(&self.lights[..])
-            + size_of_val(&self.emitters[..])
-            + size_of_val(&self.albedos[..])) as u64
-    }
-
     /// Builds the tree over the bounded objects, and chains the others.
     fn add_object_tree(&mut self, world: &World) {
         let bounds: Vec<Option<Aabb>> = world.objects().iter().map(world::Object::bounds).collect();

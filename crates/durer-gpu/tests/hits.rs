@@ -31,8 +31,8 @@ fn rays(world: &World, random: &mut Random, count: usize) -> Vec<Ray> {
     rays
 }
 
-/// Returns true if the CPU finds the device's hit after the ray is moved by rounding errors, or at
-/// the same distance on a surface that coincides with the one that it reports.
+/// Returns true if the CPU finds the device's hit after the ray is moved by rounding errors, or if
+/// the surfaces that both hit coincide there.
 fn is_near_tie(world: &World, ray: &Ray, found: Option<&HitRecord>, random: &mut Random) -> bool {
     if let (Some(hit), Some(found)) = (world.closest(ray, &mut ()), found)
         && let Some(own) = world.hit_of(found.object, &ray.into())

@@ -213,7 +213,7 @@ impl SceneBuffers {
             pass.set_bind_group(0, &self.rays.group, &[]);
             pass.dispatch_workgroups(params.ray_count.div_ceil(WORKGROUP), 1, 1);
         }
-        let bytes = size_of_val(rays) / size_of::<layout::CameraRay>() * size_of::<RayResult>();
+        let bytes = rays.len() * size_of::<RayResult>();
         encoder.copy_buffer_to_buffer(&self.rays.results, 0, &self.rays.mapped, 0, bytes as u64);
         gpu.queue.submit([encoder.finish()]);
         gpu.read(&self.rays.mapped, rays.len())
