@@ -5,8 +5,9 @@ best of Mitsuba's settings for each scene.
     TEXT]
 
 Both render each scene in turn, with the same camera, filter, depth and number of samples, and
-different seeds; `orthogonal` needs the square of a prime, and Dürer then takes as many samples. Mitsuba renders it with each of SETTINGS; the table shows the one with the shortest
-time to equal error. The mean squared error of a program is half the mean squared difference over pairs
+different seeds; `orthogonal` needs the square of a prime, and Dürer then takes as many samples.
+Mitsuba renders it with each of SETTINGS; the table shows the one with the shortest time to equal
+error. The mean squared error of a program is half the mean squared difference over pairs
 of its n pictures. This needs no reference picture, which could favour one program. The error falls
 as one over the time, so the time to equal error is time times error. Time is the CPU time of all
 threads: for Dürer minus that of a picture with one sample, which covers reading and building; for
