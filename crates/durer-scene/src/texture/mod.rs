@@ -138,6 +138,11 @@ impl Texture {
         }
     }
 
+    /// True if all texels, in linear red, green and blue, satisfy a condition.
+    pub fn all_texels(&self, condition: impl Fn([f32; 3]) -> bool) -> bool {
+        (0..self.count()).all(|at| condition(self.color(at)))
+    }
+
     /// Returns a texture that shares the texels but has another mapping.
     pub fn with_mapping(&self, mapping: Mapping) -> Self {
         Texture { mapping: Some(mapping), ..self.clone() }
