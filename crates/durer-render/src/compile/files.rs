@@ -368,10 +368,14 @@ impl<'r> Loader<'r> {
     fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let folder = name.path.trim_end_matches(['/', '\\']);
         let (mut files, mut unread) = (Vec::with_capacity(6), Diagnostics::default());
-        for face in CubeMap::FACES {
-            let candidates = ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
-            let there = candidates.iter().find(|c| self.resources.source.contains(c)).unwrap_or(&candidates[0]);
-            let file = FileName { path: there.clone(), span: name.span };
+        let candidates =
+            |face: &str| ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
+        let position = |face: &str| candidates(face).iter().position(|c| self.resources.source.contains(c));
+        // A missing face should have the format of the others.
+        let usual = CubeMap::FACES.into_iter().find_map(position).unwrap_or(0);
+        let path = |face| candidates(face)[position(face).unwrap_or(usual)].clone();
+        for path in CubeMap::FACES.map(path) {
+            let file = FileName { path, span: name.span };
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
         }
