@@ -224,6 +224,11 @@ impl Accessor {
         (i / rows) * (rows * size).next_multiple_of(4) + (i % rows) * size
     }
 
+    /// Returns the buffer view, if the accessor has one.
+    pub fn view(&self) -> Option<&BufferView> {
+        self.view.as_ref()
+    }
+
     /// Returns the size of a row in bytes.
     fn row(&self) -> usize {
         self.byte_offset(self.width - 1) + self.component.size()

@@ -186,6 +186,21 @@ impl Model<'_> {
         views.items().map(|view| self.view_of(&view)).collect()
     }
 
+    /// Returns the index of a buffer view, and that of another one of which it contains a part. Views
+    /// with the same range are not reported.
+    pub(super) fn overlapping(&self, view: &BufferView) -> Option<(usize, usize)> {
+        let own = view.slice.as_ref()?;
+        let range_of = |i: usize| {
+            let slice = self.views[i].as_ref()?.slice.as_ref()?;
+            Arc::ptr_eq(&slice.bytes, &own.bytes).then_some(&slice.range)
+        };
+        let index = (0..self.views.len()).find(|&i| range_of(i) == Some(&own.range))?;
+        let meets =
+            |range: &Range<usize>| *range != own.range && range.start < own.range.end && own.range.start < range.end;
+        let other = (0..self.views.len()).find(|&i| range_of(i).is_some_and(meets))?;
+        Some((index, other))
+    }
+
     fn view_of(&self, at: &JsonRef) -> Option<BufferView> {
         at.object()?;
         let buffer = at.required("buffer").and_then(|buffer| buffer.index(self.buffers.len()));

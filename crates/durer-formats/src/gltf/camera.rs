@@ -58,9 +58,16 @@ impl Model<'_> {
             let view = match is_flat {
                 true => Projection::Orthographic(lens.required("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
                 false => {
-                    let angle = lens.required("yfov")?.number_in(1e-4..)?;
-                    if angle >= PI {
-                        lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
+                    let yfov = lens.required("yfov")?;
+                    let angle = yfov.number_in(1e-4..)?;
+                    if angle >= 180.0 {
+                        yfov.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
+                    } else if angle >= PI {
+                        let radians = angle.to_radians();
+                        let message = format!(
+                            "`yfov` is in radians and must be less than pi; if {angle} is in degrees, write {radians:.3}"
+                        );
+                        yfov.warning("CAMERA_YFOV_GEQUAL_PI", message);
                     }
                     let aspect = lens.get("aspectRatio").and_then(|aspect| aspect.number_in(1e-4..));
                     Projection::Perspective(angle.min(3.1), aspect)

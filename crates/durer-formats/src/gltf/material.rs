@@ -171,8 +171,9 @@ impl Model<'_> {
         m.base_color_texture = texture.and_then(|texture| self.texture(&texture, |mapping| mapping.cutoff = least));
         m.opacity = match alpha {
             Alpha::Opaque => 1.0,
-            Alpha::Mask if m.base_color_texture.is_some() || factor >= cutoff => 1.0,
-            Alpha::Mask => 0.0,
+            // The alpha of a texture is at most 1.
+            Alpha::Mask if factor.min(1.0) < cutoff => 0.0,
+            Alpha::Mask => 1.0,
             Alpha::Blend => factor.clamp(0.0, 1.0),
         };
     }

@@ -5,7 +5,7 @@ use super::deform::Skin;
 use super::flat::{flattened, flattens_to_plane};
 use super::json::JsonRef;
 use crate::report::quoted;
-use durer_diag::Span;
+use durer_diag::{Diagnostic, Span};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Affine, Vec3};
 use durer_scene::scene::{Material, MatrixOp, Object, ObjectKind, Scene, Spanned};
@@ -217,6 +217,31 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
+    /// Warns about a node with a mesh that no scene of the file contains. Nodes that an extension
+    /// may refer to are not reported.
+    pub(super) fn report_nodes_without_scene(&self, root: &JsonRef, nodes: &[NodeData]) {
+        let scenes = root.value.get("scenes").and_then(|scenes| scenes.as_array());
+        let Some(scenes) = scenes.filter(|_| root.value.pointer("/extensionsUsed").is_none_or(has_no_levels)) else {
+            return;
+        };
+        let roots = scenes.iter().filter_map(|scene| scene.get("nodes")?.as_array()).flatten();
+        let mut stack: Vec<usize> = roots.filter_map(|node| Some(node.as_u64()? as usize)).collect();
+        let mut is_reached = vec![false; nodes.len()];
+        while let Some(i) = stack.pop() {
+            if i < nodes.len() && !std::mem::replace(&mut is_reached[i], true) {
+                stack.extend(&nodes[i].children);
+            }
+        }
+        let left_out = || (0..nodes.len()).filter(|&i| nodes[i].mesh.is_some() && !is_reached[i]);
+        let Some(first) = left_out().next() else { return };
+        let message = match left_out().count() {
+            1 => "no scene contains this node, so its mesh is not in the picture".to_string(),
+            count => format!("no scene contains this node and {} others with meshes", count - 1),
+        };
+        let at = if nodes[first].name.is_empty() { String::new() } else { "/name".into() };
+        self.report.report(Diagnostic::warning, "NODE_NO_SCENE", &format!("/nodes/{first}{at}"), &message);
+    }
+
     /// Adds the mesh of a node to the scene after transforming it to world space.
     pub(super) fn add_mesh(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
         let node = &nodes[number];
@@ -309,4 +334,10 @@ impl Model<'_> {
         }
         self.material_count as u32
     }
+}
+
+/// Returns true if a list of extensions does not contain the one for levels of detail, whose nodes
+/// belong to no scene.
+fn has_no_levels(extensions: &serde_json::Value) -> bool {
+    extensions.as_array().is_none_or(|names| names.iter().all(|name| name != "MSFT_lod"))
 }

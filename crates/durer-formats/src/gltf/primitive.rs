@@ -5,6 +5,7 @@ use super::accessor::{Accessor, ComponentType};
 use super::deform::{Deformation, copy};
 use super::json::JsonRef;
 use crate::sticks::sticks_and_balls;
+use durer_diag::Diagnostic;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::MeshData;
 use glam::DAffine3;
@@ -130,6 +131,7 @@ impl Model<'_> {
             }
             self.fill(&mut data, key, &attribute);
         }
+        self.check_second_set(&data, material);
         let has_normals = data.normals.len() == count;
         if material.is_none_or(|material| !self.translucent[material as usize]) {
             data.colors.iter_mut().for_each(|color| color[3] = 1.0);
@@ -165,6 +167,19 @@ impl Model<'_> {
             pose.iter_mut().for_each(|pose| pose.copy(&originals));
         }
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
+    }
+
+    /// Warns if the material of a primitive uses a second set of texture coordinates that the
+    /// primitive does not have.
+    fn check_second_set(&self, data: &MeshData, material: Option<u32>) {
+        let pointer = material.and_then(|material| self.second_sets.get(material as usize)?.as_ref());
+        if let Some(pointer) = pointer.filter(|_| data.second_uvs.is_empty()) {
+            let message = match data.uvs.is_empty() {
+                true => "the mesh has no texture coordinates, so the texture is not shown",
+                false => "the mesh has no TEXCOORD_1, so the texture is not shown; TEXCOORD_0 exists",
+            };
+            self.report.report(Diagnostic::warning, "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", pointer, message);
+        }
     }
 
     /// Converts points and lines, which have no surface, to small balls and thin cylinders.
@@ -219,6 +234,11 @@ impl Model<'_> {
             "COLOR_0" => {
                 let Some(accessor) = self.attribute(at, key, &[3, 4], UNSIGNED) else { return };
                 data.colors = self.rows(accessor, at).unwrap_or_default();
+                let is_black = |color: &[f32; 4]| color[..3] == [0.0; 3];
+                if !data.colors.is_empty() && data.colors.iter().all(is_black) {
+                    let message = "all vertex colours are black, and the base colour is multiplied by them";
+                    at.warning("dark-colors", message);
+                }
                 if accessor.width == 3 {
                     data.colors.iter_mut().for_each(|color| color[3] = 1.0);
                 }
@@ -277,10 +297,15 @@ impl Model<'_> {
         }
         if greatest as usize >= count {
             let wrong = order.iter().find(|&&i| i as usize >= count).unwrap_or(&greatest);
-            indices.error(
-                "ACCESSOR_INDEX_OOB",
-                format!("index {wrong} is out of range, because there are only {count} vertices"),
-            );
+            let message = format!("index {wrong} is out of range, because there are only {count} vertices");
+            match accessor.view().and_then(|view| self.overlapping(view)) {
+                Some((view, other)) => {
+                    let message = format!("this view of indices overlaps buffer view {other}: {message}");
+                    let pointer = format!("/bufferViews/{view}/byteOffset");
+                    self.report.report(Diagnostic::error, "ACCESSOR_INDEX_OOB", &pointer, &message);
+                }
+                None => indices.error("ACCESSOR_INDEX_OOB", message),
+            }
             return None;
         }
         Some(order)
