@@ -53,6 +53,8 @@ pub(super) struct AreaLight {
     /// Name of a picture that multiplies the radiance.
     pub picture: Option<String>,
     pub at: Span,
+    /// True if the light ends with an `AttributeEnd` or another end of a scope.
+    pub is_enclosed: bool,
 }
 
 /// Mapping from directions to positions in an environment map.

@@ -126,6 +126,7 @@ impl Reader<'_> {
             let warning = Diagnostic::warning(message).code("bad-place").at(early).related(camera.at, "the camera");
             self.report.push(warning.help("write `WorldBegin` before this directive"));
         }
+        self.report_open_lights();
         if !self.report.is_full() {
             self.finish();
         }

@@ -159,6 +159,20 @@ impl Reader<'_> {
         self.infinite.push(infinite);
     }
 
+    /// Warns about area lights outside of any scope that apply to shapes with different materials.
+    pub fn report_open_lights(&self) {
+        for (at, shapes, materials) in self.open_lights.values().filter(|(.., materials)| materials.len() > 1) {
+            let count = materials.len();
+            let message = format!(
+                "`AreaLightSource` applies to all {shapes} shapes after it, which have {count} materials, because no \
+                 `AttributeBegin` precedes it"
+            );
+            let warning = durer_diag::Diagnostic::warning(message).code("bad-place").at(*at);
+            let help = "write `AttributeBegin` before this directive, and `AttributeEnd` after the shape of the light";
+            self.report.push(warning.help(help));
+        }
+    }
+
     /// Executes an `AreaLightSource` directive.
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let third = self.language == Language::V3;
@@ -180,6 +194,7 @@ impl Reader<'_> {
             two_sided: params.boolean("twosided").unwrap_or(false),
             picture,
             at,
+            is_enclosed: !self.stack.is_empty(),
         };
         if third {
             params.mark_known(&["samples", "nsamples"]);

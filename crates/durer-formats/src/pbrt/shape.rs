@@ -12,6 +12,7 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::{Object, ObjectKind};
 use durer_scene::shape::{Disc, MeshData, Sphere};
 use glam::{DAffine3, DMat3, DVec3};
+use std::collections::BTreeSet;
 use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -120,6 +121,12 @@ impl Reader<'_> {
             !inside
         });
         let material = self.material_with_medium();
+        if let Some(light) = light.as_ref().filter(|light| !light.is_enclosed) {
+            let (_, shapes, materials) =
+                self.open_lights.entry((light.at.file, light.at.start)).or_insert((light.at, 0, BTreeSet::new()));
+            *shapes += 1;
+            materials.insert(material);
+        }
         let mut light = light.map(|light| (light.clone(), radiance(&light, &shape)));
         if let Some((light, _)) = light.as_mut().filter(|_| shape.inside_out) {
             *light = Rc::new(AreaLight { two_sided: true, ..(**light).clone() });

@@ -15,7 +15,7 @@ use durer_scene::scene::{Group, Object, Scene};
 use durer_scene::shape::MeshData;
 use durer_scene::spectrum::space::RgbSpace;
 use glam::DAffine3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -106,6 +106,9 @@ pub(super) struct Reader<'a> {
     /// First directive that appears before `WorldBegin`, but is allowed only after it.
     pub too_early: Option<Span>,
     pub in_world: bool,
+    /// Number of shapes that emit light because of an `AreaLightSource` outside of any scope, and
+    /// the materials of these shapes, by the span's start and file.
+    pub open_lights: BTreeMap<(u32, u32), (Span, usize, BTreeSet<usize>)>,
     pub infinite: Vec<InfiniteLight>,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
@@ -139,6 +142,7 @@ impl<'a> Reader<'a> {
             film: None,
             too_early: None,
             in_world: false,
+            open_lights: BTreeMap::new(),
             infinite: Vec::new(),
             meshes: BTreeMap::new(),
             scene: Scene::default(),
