@@ -3,6 +3,7 @@
 //! Source: *OpenUSD documentation*, `UsdGeomXformOp` and `UsdGeomXformable`.
 
 use super::stage::{Prim, Stage};
+use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
@@ -10,6 +11,7 @@ use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 /// all ancestors.
 pub(super) fn local_transform(stage: &Stage, prim: &Prim) -> (DAffine3, bool) {
     let (mut whole, mut resets) = (DAffine3::IDENTITY, false);
+    report_missing_order(stage, prim);
     for name in &prim.texts(stage, "xformOpOrder") {
         if name == "!resetXformStack!" {
             (whole, resets) = (DAffine3::IDENTITY, true);
@@ -28,6 +30,19 @@ pub(super) fn local_transform(stage: &Stage, prim: &Prim) -> (DAffine3, bool) {
         whole *= if inverted { map.inverse() } else { map };
     }
     (whole, resets)
+}
+
+/// Warns about a prim that has operations, but no `xformOpOrder` that applies them.
+fn report_missing_order(stage: &Stage, prim: &Prim) {
+    let names = prim.property_names();
+    let Some(first) =
+        names.iter().find(|name| name.starts_with("xformOp:")).filter(|_| !names.contains("xformOpOrder"))
+    else {
+        return;
+    };
+    let message = format!("`{first}` of `{}` has no effect, because the prim has no `xformOpOrder`", prim.name());
+    let help = format!("add `uniform token[] xformOpOrder = [\"{first}\"]`, which lists all operations in order");
+    stage.files.report.push(Diagnostic::warning(message).code("missing-field").at(prim.span()).help(help));
 }
 
 fn operation(stage: &Stage, prim: &Prim, name: &str) -> Option<DAffine3> {
