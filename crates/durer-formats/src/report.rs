@@ -124,7 +124,11 @@ impl Report {
 pub(super) fn quoted(bytes: &[u8]) -> String {
     const MAX_CHARS: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MAX_CHARS)]);
-    let mut shown: String = text.chars().take(MAX_CHARS).flat_map(char::escape_debug).collect();
+    let mut shown = String::new();
+    for c in text.chars().take(MAX_CHARS) {
+        // A doubled backslash would look like a part of a path.
+        if c == '\\' { shown.push(c) } else { shown.extend(c.escape_debug()) }
+    }
     if text.chars().count() > MAX_CHARS || bytes.len() > 4 * MAX_CHARS {
         shown.push('…');
     }

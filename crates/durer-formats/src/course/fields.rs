@@ -59,7 +59,11 @@ impl Reader<'_, '_> {
             let field = &fields[index];
             if !ours && field.keyword(self.options.dialect) != Some(word.as_str()) {
                 let set = field.keywords.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
-                self.report_foreign_word(&word, span, set);
+                let is_native = fields.iter().any(|field| field.keyword(self.options.dialect) == Some(word.as_str()));
+                match is_native {
+                    true => self.report_foreign_count(&word, span, set),
+                    false => self.report_foreign_word(&word, span, set),
+                }
             }
             if order == Order::Listed && index < last && self.options.strict {
                 self.error(Diagnostic::error(format!("`{word}` must be written earlier in `{name}`")).at(span));
@@ -406,6 +410,27 @@ impl Reader<'_, '_> {
         let message = format!("`{after}` needs {what}, but `{text}` begins a comment");
         let error = Diagnostic::error(message).code("syntax").at(span).label(format!("{what} expected"));
         Some(error.help(format!("colours are three numbers from 0 to 1: `{numbers}`")).fix(span, numbers))
+    }
+
+    /// Reports a field that takes one number in some dialects and three in others, and has the wrong
+    /// number of values for this dialect.
+    fn report_foreign_count(&mut self, word: &str, span: Span, set: DialectSet) {
+        let dialect = self.options.dialect;
+        if self.options.strict || dialect == Dialect::Durer {
+            return self.report_foreign_word(word, span, set);
+        }
+        let numbers: Vec<Span> =
+            (0..3).take_while(|&i| self.number_ahead(i)).filter_map(|i| Some(self.ahead(i)?.span)).collect();
+        let name = dialect.name();
+        let [first, _, last] = numbers[..] else {
+            let message = format!("`{word}` takes three numbers in {name}, not one: this value has no effect");
+            return self.diagnostics.push(Diagnostic::warning(message).code("foreign-word").at(span));
+        };
+        let square = self.text(last);
+        let message = format!("`{word}` takes one number in {name}, not three: these values have no effect");
+        let warning = Diagnostic::warning(message).code("foreign-word").at(first.join(last));
+        let help = format!("write only the coefficient of the squared distance: `{word} {square}`");
+        self.diagnostics.push(warning.help(help).fix(first.join(last), square));
     }
 
     /// Reports a word that this dialect does not have. In strict mode this is an error, and

@@ -292,7 +292,11 @@ impl Reader<'_, '_> {
         let Some(file) = find_file(self.input, &name, span) else {
             let message =
                 format!("material `{}`: the picture {} of `{word}` was not found", m.name, quoted(name.as_bytes()));
-            diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
+            let warning = Diagnostic::warning(message).code("missing-file").at(span);
+            diagnostics.push(match name.contains(['/', '\\']) {
+                true => warning.help("copy the picture into the folder of the model, and write only its name"),
+                false => warning,
+            });
             return None;
         };
         let path = format!("{}#{}/{word}", self.path, m.name);

@@ -141,7 +141,9 @@ fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diag
     }
     let (sources, _) = numbers.next("number of light sources")?;
     let (lumens, _) = numbers.next("lumens per light source")?;
+    let before = numbers.at;
     let multiplier = numbers.factor("multiplier")?;
+    let multiplier_at = before + text[before..].find(|c: char| !c.is_whitespace()).unwrap_or(0)..numbers.at;
     let verticals = numbers.count("number of vertical angles")?;
     let horizontals = numbers.count("number of horizontal angles")?;
     let (kind, kind_at) = numbers.next("photometric type")?;
@@ -200,7 +202,18 @@ fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diag
         candela.extend_from_within(..verticals);
     }
     if candela.iter().all(|candela| *candela == 0.0) {
-        warn(angles, "black-light", "this luminaire emits no light, because all its candela values are 0");
+        match multiplier == 0.0 {
+            true => {
+                let message = "this luminaire emits no light, because the multiplier of its candela values is 0";
+                warn(multiplier_at, "black-light", message);
+            }
+            false if ballast == 0.0 => {
+                warn(angles, "black-light", "this luminaire emits no light, because its ballast factor is 0");
+            }
+            false => {
+                warn(angles, "black-light", "this luminaire emits no light, because all its candela values are 0");
+            }
+        }
     }
     if let Some(more) = more {
         warn(
