@@ -116,9 +116,23 @@ fn text(bytes: &[u8]) -> String {
         _ if controls_terminal(c) => "?".repeat(c.len_utf8()),
         _ => c.to_string(),
     };
+    if bytes.contains(&0) {
+        return bytes.split_inclusive(|b| *b == b'\n').map(text_of_line).collect();
+    }
     match std::str::from_utf8(bytes) {
         Ok(text) => text.chars().map(harmless).collect(),
         Err(_) => bytes.iter().map(|&b| harmless(if b.is_ascii() { char::from(b) } else { '?' })).collect(),
+    }
+}
+
+/// Returns a line of a binary file, which is blank unless it is part of a header of plain text.
+fn text_of_line(line: &[u8]) -> String {
+    let is_text = line.iter().all(|b| (b' '..0x7f).contains(b) || b.is_ascii_whitespace());
+    let blank = |&b: &u8| if b == b'\n' { '\n' } else { ' ' };
+    if is_text {
+        line.iter().map(|&b| char::from(b).to_string().replace('\r', " ")).collect()
+    } else {
+        line.iter().map(blank).collect()
     }
 }
 
