@@ -82,6 +82,28 @@ lamp polygon panel
 12  -0.5 0.5 4   0.5 0.5 4   0.5 -0.5 4   -0.5 -0.5 4
 ";
 
+const GLTF: &str = include_str!("models/panel.gltf");
+
+const USD: &str = include_str!("models/ball.usda");
+
+const STL: &str = "solid sheet
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+facet normal 0 0 1
+outer loop
+vertex 1 0 0
+vertex 1 1 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid sheet
+";
+
 /// Extension of a model, its text, replacements in the text, and the expected code.
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static str);
 
@@ -121,10 +143,49 @@ const CASES: &[Case] = &[
         ],
         "bad-place",
     ),
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("WorldBegin\nAttributeBegin\n", "WorldBegin\n"),
+            ("\"float radius\" 0.8\nAttributeEnd", "\"float radius\" 0.8"),
+        ],
+        "bad-place",
+    ),
+    // The eye and the target are exchanged.
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("LookAt 2 3 8  0 0.8 0", "LookAt 1.6 1.6 0  2 1.4 8"),
+            ("Material \"coateddiffuse\"", "Shape \"sphere\" \"float radius\" 0.4\nMaterial \"coateddiffuse\""),
+        ],
+        "camera-away",
+    ),
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("\"integer maxdepth\" 8", "\"integer maxdepth\" 1"),
+            ("coateddiffuse", "dielectric"),
+            ("\"rgb reflectance\" [ 0.1 0.3 0.7 ] \"float roughness\" 0.1", ""),
+        ],
+        "no-bounces",
+    ),
     ("xml", MITSUBA, &[], ""),
     ("xml", MITSUBA, &[("name=\"max_depth\" value=\"8\"", "name=\"max_depth\" value=\"1\"")], "no-bounces"),
     ("xml", MITSUBA, &[("angle=\"90\"", "angle=\"-90\"")], "lamp-turned"),
     ("xml", MITSUBA, &[("angle=\"-90\"", "angle=\"90\"")], "seen-from-behind"),
+    // The lamp lies in the floor, because it is moved before it is turned.
+    (
+        "xml",
+        MITSUBA,
+        &[(
+            "<rotate x=\"1\" angle=\"90\"/><translate x=\"1\" y=\"5\" z=\"2\"/>",
+            "<translate y=\"3\"/><rotate x=\"1\" angle=\"90\"/>",
+        )],
+        "lamp-turned",
+    ),
     ("rad", RADIANCE, &[], ""),
     (
         "rad",
@@ -134,6 +195,39 @@ const CASES: &[Case] = &[
     ),
     ("rad", RADIANCE, &[("5 0.5 0.5 0.48", "5 178 26 26")], "color-range"),
     ("rad", RADIANCE, &[("12  -4 -4 0", "9  -4 -4 0")], "bad-value"),
+    ("gltf", GLTF, &[], ""),
+    ("gltf", GLTF, &[("\"yfov\":0.6", "\"yfov\":35")], "CAMERA_YFOV_GEQUAL_PI"),
+    ("gltf", GLTF, &[("[0,1,2,3]}],\"nodes\"", "[1,2,3]}],\"nodes\"")], "NODE_NO_SCENE"),
+    // A second scene may contain nodes that the first one does not.
+    ("gltf", GLTF, &[("[0,1,2,3]}],\"nodes\"", "[1,2,3]},{\"nodes\":[0]}],\"nodes\"")], ""),
+    ("gltf", GLTF, &[("\"TEXCOORD_0\":1", "\"TEXCOORD_0\":1,\"COLOR_0\":2")], "dark-colors"),
+    (
+        "gltf",
+        GLTF,
+        &[("\"name\":\"Poster\",", "\"name\":\"Poster\",\"normalTexture\":{\"index\":0,\"texCoord\":1},")],
+        "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
+    ),
+    ("gltf", GLTF, &[("\"byteOffset\":128", "\"byteOffset\":56")], "ACCESSOR_INDEX_OOB"),
+    (
+        "gltf",
+        GLTF,
+        &[("\"name\":\"Poster\",", "\"name\":\"Poster\",\"alphaMode\":\"MASK\",\"alphaCutoff\":9,")],
+        "ALPHA_CUTOFF",
+    ),
+    ("usda", USD, &[], ""),
+    (
+        "usda",
+        USD,
+        &[("(0, 0.7, 0)\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]", "(0, 0.7, 0)")],
+        "missing-field",
+    ),
+    ("stl", STL, &[], ""),
+    (
+        "stl",
+        STL,
+        &[("1 0 0\nvertex 0 1 0", "0 0 0\nvertex 0 1 0"), ("vertex 1 1 0", "vertex 1 0 0")],
+        "degenerate-mesh",
+    ),
     ("ply", PLY, &[], ""),
     (
         "ply",
@@ -223,6 +317,44 @@ fn models_whose_only_light_misses_them_are_reported() {
     };
     let output = TestFolder::new().expect_exit(1, &format!("check {}", model.display())).out;
     assert!(output.contains("mostly-black") && output.contains("the scene's only light does not reach it"), "{output}");
+}
+
+/// Emission in bytes is reported at its statement in the material file.
+#[test]
+fn emission_in_bytes_is_reported_at_its_statement() {
+    let folder = TestFolder::new();
+    let floor = "v -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl floor\nf 1 4 3 2\n";
+    let lamp = "v -3 0 -4\nv 3 0 -4\nv 3 6 -4\nv -3 6 -4\nusemtl lamp\nf 5 6 7 8\n";
+    folder.write("m.obj", format!("mtllib m.mtl\n{floor}{lamp}"));
+    folder.write("m.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\nKe 255 204 102\nnewmtl floor\nKd 0.5 0.5 0.5\n");
+    let output = folder.expect_exit(1, "check m.obj").out;
+    assert!(output.contains("m.mtl:3:1") && output.contains("`Ke 1 0.8 0.4`"), "{output}");
+}
+
+/// A material whose alpha is below the cutoff is invisible, also with an opaque texture.
+#[test]
+fn a_cutoff_above_1_hides_the_material() {
+    let folder = TestFolder::new();
+    let picture = |text: &str| {
+        folder.write("a.gltf", text);
+        folder.expect_exit(0, "render a.gltf -o a.png --size 24x24 --samples 2");
+        folder.bytes("a.png")
+    };
+    let cut =
+        GLTF.replacen("\"name\":\"Poster\",", "\"name\":\"Poster\",\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5,", 1);
+    let without = GLTF.replacen("[0,1,2,3]}],\"nodes\"", "[1,2,3]},{\"nodes\":[0]}],\"nodes\"", 1);
+    assert_eq!(picture(&cut), picture(&without));
+}
+
+/// Lamps outside the picture are normal, so they are not mentioned.
+#[test]
+fn lamps_outside_the_picture_are_not_mentioned() {
+    let folder = TestFolder::new();
+    for (name, text) in [("a.pbrt", PBRT), ("a.xml", MITSUBA), ("a.usda", USD)] {
+        folder.write(name, text);
+        let output = folder.expect_exit(0, &format!("check {name}")).out;
+        assert!(output.contains("no findings"), "{output}");
+    }
 }
 
 /// If the automatic camera sees only the outside of a room, a view beside the scene is offered.

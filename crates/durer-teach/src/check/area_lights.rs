@@ -1,7 +1,7 @@
 //! Checks for path tracing that find area lights whose light does not reach the visible surfaces.
 
 use super::facing::{flip_text, flipped};
-use super::finding::{Finding, MAX_FINDINGS};
+use super::finding::{Finding, MAX_FINDINGS, vector};
 use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape};
@@ -9,7 +9,7 @@ use super::verdict::most_common;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::integrator::IntegratorKind;
 use durer_render::world::emitters::emitter_of;
-use durer_render::world::{Material, Object};
+use durer_render::world::{Geometry, Material, Object};
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::scene::Material as ParsedMaterial;
 use durer_scene::shape::{Flip, Shape};
@@ -67,7 +67,7 @@ pub(super) fn brightest(scene_probe: &SceneProbe) -> Option<(Span, f32)> {
 
 /// Returns true if light can pass through an object because it is transparent, an interface, or not
 /// opaque.
-fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
+pub(super) fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
     match scene_probe.world().materials().get(scene_probe.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
@@ -199,11 +199,7 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let flip = shape(object).and_then(Shape::flip);
         let help = match flip {
-            _ if scene_probe.model_format().is_some() => {
-                "turn the light towards the scene, or reverse the order of its vertices: a surface emits light on the \
-                 side of its normal"
-                    .to_string()
-            }
+            _ if scene_probe.model_format().is_some() => model_help(scene_probe, number),
             _ => {
                 let turn = match flip {
                     Some(Flip::Corners(_)) => "swap two vertices of the triangle".into(),
@@ -226,6 +222,37 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         Some(Finding::from(with_flip(scene_probe, diagnostic, number)).affecting_whole_picture(whole))
     };
     one_sided.filter_map(say).collect()
+}
+
+/// Returns the help about an area light of a model that faces away. A light that lies in the surface
+/// of another object is in the wrong place.
+fn model_help(scene_probe: &SceneProbe, number: u32) -> String {
+    let object = &scene_probe.world().objects()[number as usize];
+    let center = object.bounds().map_or(Vec3::ZERO, |bounds| bounds.center());
+    if let Some(other) = surface_at(scene_probe, number, center) {
+        return format!(
+            "check the transforms of the light and their order: its center is at {}, in the surface of the {}",
+            vector(center),
+            scene_probe.object(other)
+        );
+    }
+    let turn = match object.geometry {
+        Geometry::Mesh(_) => "turn the light towards the scene, or reverse the order of its vertices",
+        Geometry::Primitive(_) | Geometry::Solid(_) => "turn the light towards the scene",
+    };
+    format!(
+        "{turn}: a surface emits light on the side of its normal, and the center of this one is at {}",
+        vector(center)
+    )
+}
+
+/// Returns the object other than a light whose surface passes through the center of the light.
+fn surface_at(scene_probe: &SceneProbe, light: u32, center: Vec3) -> Option<u32> {
+    let (_, n) = emitter_of(&scene_probe.world().objects()[light as usize], 0)?;
+    let step = 1e-3 * scene_probe.world().bounds().size().length() * n.normalize_or(Vec3::Y);
+    let across = Ray { t_max: 1.0, ..Ray::new(center - step, 2.0 * step) };
+    let hits = scene_probe.world().hits_of_each(&across).map(|hit| hit.object);
+    hits.into_iter().find(|object| *object != light)
 }
 
 /// Adds the edit that flips a flat area light. A triangle gets no edit because any two of its

@@ -1,7 +1,7 @@
 //! Checks lights with attenuation: how much light arrives, and whether the divisor is positive.
 
 use super::finding::{Finding, number, vector};
-use super::lights::{description, for_each_verdict, no_contribution, span};
+use super::lights::{description, for_each_verdict, no_contribution, none_contributes, span};
 use super::scene_probe::SceneProbe;
 use super::shapes::point;
 use super::verdict::{LightVerdict, attenuation};
@@ -19,6 +19,10 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
             Some(_) => format!("this light fades to {} before it arrives", number(most)),
         };
         let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
+        let diagnostic = match none_contributes(scene_probe) {
+            true => diagnostic.effect("hardly any light reaches the visible surfaces: they are dark"),
+            false => diagnostic.effect("this light contributes hardly anything to the picture"),
+        };
         let factor = 0.8 / most.max(1e-30);
         if let Some((field, value)) = strength(scene_probe, span)
             && let Ok(written) = scene_probe.text(value).parse::<f32>()

@@ -7,7 +7,7 @@ use super::lights::{description, no_contribution, none_contributes};
 use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot};
 use durer_diag::Diagnostic;
-use durer_scene::light::{Illuminate as _, Light};
+use durer_scene::light::{Illuminate as _, Light, PhotometricLight};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 
@@ -49,12 +49,57 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
             ),
         };
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
+        if let Some(aimed) = aimed_profile(scene_probe, light, to) {
+            return aimed_at(scene_probe, diagnostic, light, aimed, model);
+        }
         match scene_probe.field_span(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
             // The default direction is straight down.
             None => diagnostic.help(help),
         }
     })
+}
+
+/// Direction that makes a photometric light reach the objects, or `None` if no direction does.
+type AimedProfile = Option<Vec3>;
+
+/// Returns the direction to help with if a photometric light would not reach the objects with its
+/// axis pointed at them, because its profile has no light along the axis.
+fn aimed_profile(scene_probe: &SceneProbe, light: &Spanned<Light>, to: Vec3) -> Option<AimedProfile> {
+    let number = scene_probe.input.scene.lights.iter().flatten().position(|other| std::ptr::eq(other, light))?;
+    let profile = scene_probe.world().profiles().get(number)?.as_ref()?;
+    let Light::Photometric(own) = &light.value else { return None };
+    let reaches = |direction: Vec3| {
+        let turned = PhotometricLight { direction, ..own.clone() };
+        profile.at(turned.to_profile(to)) > 0.02 * profile.max_candela()
+    };
+    if reaches(to) {
+        return None;
+    }
+    let opposite = -own.direction;
+    Some([opposite, -to].into_iter().find(|direction| reaches(*direction)))
+}
+
+/// Places a finding about a photometric light whose profile has no light along its axis.
+fn aimed_at(
+    scene_probe: &SceneProbe,
+    diagnostic: Diagnostic,
+    light: &Spanned<Light>,
+    aimed: AimedProfile,
+    is_model: bool,
+) -> Diagnostic {
+    let why = "the luminaire emits no light along its axis";
+    let value = scene_probe.field_span(light.span, &["direction"]);
+    let diagnostic = Diagnostic { span: value.or(diagnostic.span), ..diagnostic };
+    match aimed {
+        _ if is_model => diagnostic.help(format!("turn the light over, or use another luminaire: {why}")),
+        Some(direction) => {
+            let text = vector(direction);
+            let help = format!("write `direction {text}`, which turns the light over: {why}, but on its other side");
+            diagnostic.help(help).fix_at(value, text)
+        }
+        None => diagnostic.help(format!("use another file, or move the light: {why}")),
+    }
 }
 
 /// Reports cones that cover almost none of the visible points.

@@ -43,6 +43,12 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 false => "the environment emits no light and is invisible".into(),
             });
         }
+        // The second section replaces all that the first one contains.
+        "repeated" if finding.diagnostic.message.starts_with("the scene has more than") => {
+            finding.affects_whole_picture = true;
+            finding.diagnostic.effect.get_or_insert("everything in the first one is ignored".into());
+            finding.diagnostic.help.get_or_insert("write one section that contains everything".into());
+        }
         "no-falloff" | "bad-place" => finding.affects_whole_picture = true,
         "no-objects" => {
             finding.affects_whole_picture = true;
@@ -76,6 +82,11 @@ fn is_only_light(scene_probe: &SceneProbe) -> bool {
 /// Adds help about placing objects. In the node grammar, the surrounding node places an object. In
 /// other dialects, the object's own fields do.
 fn foreign_in_nodes(scene_probe: &SceneProbe, finding: &mut Finding) {
+    // Values that are ignored because of their number change the light.
+    if finding.diagnostic.message.ends_with("no effect") {
+        finding.affects_whole_picture = true;
+        return;
+    }
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scene_probe.text(span)).unwrap_or_default();
     if scene_probe.input.dialect == Dialect::F23

@@ -3,7 +3,7 @@
 use super::brightness::exposed_colors_with;
 use super::finding::{Finding, percent};
 use super::scene_probe::SceneProbe;
-use durer_diag::Diagnostic;
+use durer_diag::{Diagnostic, Span};
 use durer_render::integrator::RenderSettings;
 
 /// Number of bounces of the comparison with indirect light.
@@ -36,6 +36,20 @@ pub(super) fn limited(scene_probe: &SceneProbe) -> Vec<Finding> {
     no_indirect_light(scene_probe).into_iter().collect()
 }
 
+/// Returns the word that limits the depth of paths in a model, and its span, if the limit of the
+/// model applies.
+pub(super) fn limit_of_file(scene_probe: &SceneProbe) -> Option<(&'static str, Span)> {
+    let word = match scene_probe.model_format()?.name {
+        "pbrt" => "maxdepth",
+        "Mitsuba" => "max_depth",
+        _ => return None,
+    };
+    let written = scene_probe.input.scene.render_defaults.bounces;
+    let bytes = scene_probe.input.files.bytes(0).filter(|_| written == Some(scene_probe.input.job.settings.bounces))?;
+    let start = bytes.windows(word.len()).position(|part| part == word.as_bytes())?;
+    Some((word, Span { file: 0, start: start as u32, end: (start + word.len()) as u32 }))
+}
+
 /// Reports a picture without indirect light whose surfaces are black, although indirect light would
 /// reach them.
 fn no_indirect_light(scene_probe: &SceneProbe) -> Option<Finding> {
@@ -62,5 +76,9 @@ fn no_indirect_light(scene_probe: &SceneProbe) -> Option<Finding> {
     ))
     .effect("surfaces that no light reaches directly are black")
     .help("set `--bounces 16`, or omit `--bounces`");
+    let diagnostic = match limit_of_file(scene_probe) {
+        Some((word, place)) => diagnostic.at(place).help(format!("increase `{word}`, or set `--bounces 16`")),
+        None => diagnostic,
+    };
     Some(Finding::from(diagnostic).affecting_whole_picture(true))
 }

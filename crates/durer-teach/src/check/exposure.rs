@@ -72,8 +72,10 @@ fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
         false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
+    let emitter = super::emission::strongest(scene_probe).filter(|_| light.is_none() && !sky);
     let diagnostic = match light {
         Some((place, value)) => diagnostic.at(place).fix(place, number(value * 0.5 / middle)),
+        None if emitter.is_some() => super::emission::blamed(scene_probe, diagnostic, emitter),
         None => Diagnostic { span: super::colors::background_span(scene_probe), ..diagnostic },
     };
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
@@ -198,11 +200,14 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports a path-traced picture that is almost black.
 fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
-    if !scene_probe.is_dark() {
+    let is_dark = scene_probe.is_dark();
+    let lit = super::emission::dim_surfaces(scene_probe).filter(|_| !is_dark);
+    if !is_dark && lit.is_none() {
         return Vec::new();
     }
-    let most = brightest(scene_probe.exposed_colors());
+    let most = lit.unwrap_or_else(|| brightest(scene_probe.exposed_colors()));
     let message = match most < 1e-6 {
+        _ if lit.is_some() => format!("apart from lamps, the brightest value in the picture is only {}", number(most)),
         true => "nearly the whole picture is black: hardly any light reaches the camera".to_string(),
         false => format!("the brightest value in the picture is only {}", number(most)),
     };

@@ -340,9 +340,10 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let word = if size > middle { "larger" } else { "smaller" };
         let diagnostic = Diagnostic::warning(format!(
-            "the {} is {} times {word} than most objects in this scene",
+            "the {} is {} times {word} than {}",
             scene_probe.object(object),
-            number(ratio)
+            number(ratio),
+            if sizes.len() == 2 { "the other object" } else { "most objects in this scene" }
         ))
         .at(scene_probe.object_span(object))
         .effect(match scene_probe.visibilities()[object as usize] {
@@ -352,9 +353,10 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
             _ => "the object is invisible",
         })
         .help(format!(
-            "the object's largest side is {}, but that of most objects is {}: check the size and its unit (such as \
+            "the object's largest side is {}, but that of {} is {}: check the size and its unit (such as \
              millimetres), and the `{}` that encloses the object",
             number(size),
+            if sizes.len() == 2 { "the other" } else { "most objects" },
             number(middle),
             scene_probe.keyword_of_grammar("Scale", "scale")
         ));

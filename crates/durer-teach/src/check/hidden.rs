@@ -22,13 +22,14 @@ pub(super) fn hidden_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
 pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut hits = scene_probe.hits().map(|(_, hit)| hit.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
-    let (mut hidden, mut others) = (0, 0);
+    let (mut hidden, mut others, mut behind_camera) = (0, 0, 0);
     let empty = super::objects::without_surface(scene_probe);
     let there = |(i, _): &(usize, &Visibility)| *i as u32 != front && !empty.contains(&(*i as u32));
     for (number, sight) in scene_probe.visibilities().iter().enumerate().filter(there) {
         match sight {
             Visibility::Hidden(_) => hidden += 1,
             Visibility::Unknown if scene_probe.world().objects()[number].bounds().is_none() => {}
+            Visibility::Outside if is_behind_camera(scene_probe, number) => behind_camera += 1,
             _ => others += 1,
         }
     }
@@ -60,7 +61,8 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
         (true, false) => "check the sign of `offset`: the plane is at p · normal = offset",
         _ => "move the object, make it smaller, or move the camera",
     };
-    let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
+    let place = if behind_camera > 0 { " in front of the camera" } else { "" };
+    let diagnostic = Diagnostic::warning(format!("the {name} hides everything else{place}"))
         .at(scene_probe.object_span(front))
         .label(format!("covers {} of the picture", percent(covered, scene_probe.probes.len())))
         .effect(format!("{} behind it are invisible", counted(hidden, "object", "objects")))
@@ -70,6 +72,14 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
         None => diagnostic,
     };
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+}
+
+/// Returns true if all of a bounded object is behind the camera.
+fn is_behind_camera(scene_probe: &SceneProbe, object: usize) -> bool {
+    let (camera, frame) = (scene_probe.world().camera(), scene_probe.world().camera_frame());
+    let is_behind = |corner: &Vec3| (*corner - camera.pose().center).dot(frame.forward) <= 0.0;
+    let bounds = scene_probe.world().objects()[object].bounds().filter(|_| has_eye(scene_probe));
+    bounds.is_some_and(|bounds| bounds.corners().iter().all(is_behind))
 }
 
 /// Reports one object close to the camera that covers most of the picture and of the other objects.
@@ -242,4 +252,18 @@ fn negated_offset(scene_probe: &SceneProbe, object: u32) -> Option<(Span, String
     let objects = scene_probe.world().bounds();
     (above(objects.center()) == above(scene_probe.world().camera().pose().center))
         .then(|| (place, number(-plane.offset)))
+}
+
+/// Returns the span of a plane's offset and the negated offset if all objects stand on the plane
+/// with the negated offset, and not on the plane as it is.
+pub(super) fn offset_below_objects(scene_probe: &SceneProbe, object: u32) -> Option<(Span, String)> {
+    let negated = negated_offset(scene_probe, object)?;
+    let (n, d) = world_plane(scene_probe, object)?;
+    let (objects, up) = (scene_probe.world().bounds(), scene_probe.world().camera_frame().up);
+    let side = if n.dot(up) < 0.0 { -1.0 } else { 1.0 };
+    let heights = || objects.corners().map(|corner| side * corner.dot(n));
+    let lowest = heights().into_iter().fold(f32::INFINITY, f32::min);
+    let slack = 0.05 * objects.size().max_element();
+    let stands_on = |offset: f32| (lowest - side * offset).abs() <= slack;
+    (!objects.is_empty() && stands_on(-d) && !stands_on(d)).then_some(negated)
 }

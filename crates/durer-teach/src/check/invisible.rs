@@ -27,7 +27,10 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         return findings;
     }
     let all = (0..visibilities.len() as u32).filter(|i| !nothing.contains(i));
-    let out: Vec<u32> = all.clone().filter(|&i| visibilities[i as usize] == Visibility::Outside).collect();
+    // A lamp outside the picture is normal.
+    let is_lamp = |i: u32| scene_probe.world().may_emit(scene_probe.world().objects()[i as usize].material);
+    let outside = |i: &u32| visibilities[*i as usize] == Visibility::Outside && !is_lamp(*i);
+    let out: Vec<u32> = all.clone().filter(outside).collect();
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match visibilities[i as usize] {
             // Objects behind glass and objects seen in a mirror count as visible.

@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_render::world::Material;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
-use durer_scene::math::{Vec2, fp};
+use durer_scene::math::fp;
 use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 use durer_scene::texture::Channel;
 
@@ -60,6 +60,15 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
         } else {
             (base <= BLACK && !textured && !skin).then_some("baseColor")?
         };
+        let is_bright = m.base_color.max_element() > BLACK;
+        let word = if word == "baseColor" && m.base_weight <= BLACK && is_bright { "baseWeight" } else { word };
+        if word == "baseWeight" {
+            let diagnostic = Diagnostic::warning(format!("material {number} is black: it reflects no light"))
+                .effect("objects with this material are black under any light")
+                .help("increase `baseWeight`, the factor by which `baseColor` is multiplied; it is 1 by default");
+            let value = scene_probe.field_span(material.span, &[word]);
+            return Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "1"), material.span, &[word])));
+        }
         let what = match word {
             "subsurfaceColor" => "the visible colour of the object",
             _ if m.base_metalness > 0.9 => "the reflectance of the metal",
@@ -149,25 +158,34 @@ pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
     layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
-/// Returns true if the opacity texture of a material is black everywhere.
+/// Returns true if the channel of the opacity texture that a material uses is 0 everywhere.
 fn has_black_opacity(scene_probe: &SceneProbe, material: usize) -> bool {
     let world = scene_probe.world();
     let Some(Material::Phong(phong)) = world.materials().get(material) else { return false };
     let map = phong.principled.as_ref().and_then(|principled| principled.maps.opacity);
     let Some(texture) = map.and_then(|map| world.textures().get(map as usize)) else { return false };
     let mapping = texture.mapping().cloned().unwrap_or_default();
-    let red = !texture.has_alpha() && matches!(mapping.channel, None | Some(Channel::Red));
-    red && texture.is_flat() && texture.texel(&mapping, Vec2::splat(0.5), 0.0)[0] == 0.0
+    let channel = match mapping.channel {
+        None | Some(Channel::Red) => 0,
+        Some(Channel::Green) => 1,
+        Some(Channel::Blue) => 2,
+        Some(Channel::Alpha | Channel::Angle) => return false,
+    };
+    (!texture.has_alpha() || mapping.channel.is_some()) && texture.all_texels(|texel| texel[channel] == 0.0)
 }
 
 /// Reports surfaces whose opacity is zero, or whose opacity texture is black.
 pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         if has_black_opacity(scene_probe, number) {
-            let message = format!("the opacity texture of material {number} is black everywhere");
+            let message =
+                format!("the opacity texture of material {number} is 0 everywhere in the channel that is used");
             let diagnostic = Diagnostic::warning(message)
                 .effect("objects with this material are invisible: light passes through unchanged")
-                .help("use a texture that is white where the surface is present");
+                .help(
+                    "use a texture that is white where the surface is present; of a texture without alpha, the red \
+                     channel is used, or the one after a colon, as in `picture.png:b`",
+                );
             return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["opacityTexture"])));
         }
         if let Some(cutoff) = m.opacity_cutoff.filter(|cutoff| *cutoff > 1.0) {

@@ -189,6 +189,9 @@ pub(super) fn eyes_apart(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scene_probe.at_value(diagnostic, span, &["separation"])).affecting_whole_picture(true)]
 }
 
+/// Effect of a plane that contains the camera.
+const EDGE_ON: &str = "the plane is seen edge-on, so it is invisible";
+
 /// Reports planes that are seen edge-on and are therefore invisible.
 pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
@@ -215,16 +218,31 @@ pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
                 .help("tilt the camera's `direction` towards the plane, which looks like a line when seen edge-on"),
             false => {
+                let diagnostic = Diagnostic::warning(format!("the camera is exactly in the {name}"));
+                if let Some((place, offset)) = super::hidden::offset_below_objects(scene_probe, number as u32) {
+                    let help = format!(
+                        "write `offset {offset}`: the plane is at p · normal = offset, and with the opposite sign all \
+                         objects stand on it"
+                    );
+                    let diagnostic = diagnostic.effect(EDGE_ON).help(help).fix(place, offset);
+                    findings.push(Finding::from(diagnostic.at(place)).affecting_whole_picture(true));
+                    continue;
+                }
                 // This is the normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scene_probe.field_span(scene_probe.input.scene.camera_span, &["center"]);
-                Diagnostic::warning(format!("the camera is exactly in the {name}"))
-                    .help(format!("move the camera to one side of the plane: try `center {raised}`"))
-                    .fix_at(value, raised)
+                // Below the plane, the picture would be upside down.
+                let value = value.filter(|_| side.dot(world.camera_frame().up) >= 0.0);
+                match value {
+                    Some(value) => diagnostic
+                        .help(format!("move the camera to one side of the plane: try `center {raised}`"))
+                        .fix(value, raised),
+                    None => diagnostic.help("move the camera to one side of the plane, or move the plane"),
+                }
             }
         };
-        let diagnostic = diagnostic.effect("the plane is seen edge-on, so it is invisible");
+        let diagnostic = diagnostic.effect(EDGE_ON);
         let diagnostic = diagnostic.related(scene_probe.object_span(number as u32), "this plane");
         findings.push(Finding::from(scene_probe.at_value(
             diagnostic,

@@ -10,6 +10,7 @@ use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::{block, section};
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
+use durer_scene::dialect::Dialect;
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
@@ -30,13 +31,18 @@ pub(super) fn none_contributes(scene_probe: &SceneProbe) -> bool {
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != LightVerdict::Works)
 }
 
+/// Effect of a light that does not contribute.
+const NO_CONTRIBUTION: &str = "this light contributes nothing to the picture";
+
 /// Returns a warning that a light contributes nothing, and the span of the light.
 pub(super) fn no_contribution(scene_probe: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = span(scene_probe, light)?;
     let effect = match (none_contributes(scene_probe), scene_probe.world().ambient().max_element() > VISIBLE) {
+        // Paths also find the light of the background.
+        (true, false) if scene_probe.is_physical() && !scene_probe.is_dark() => NO_CONTRIBUTION,
         (true, false) => "no light reaches the visible surfaces: all are black",
         (true, true) => "no light reaches the visible surfaces: they show only ambient light, flat and dark",
-        (false, _) => "this light contributes nothing to the picture",
+        (false, _) => NO_CONTRIBUTION,
     };
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
@@ -78,8 +84,12 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = enclosed(scene_probe);
     findings.extend(for_each_verdict(scene_probe, |light, verdict| {
         let LightVerdict::Inside(object) = verdict else { return None };
-        // Photons can leave a glass object by refraction.
-        if scene_probe.input.job.method.prepares() && transmits(scene_probe, object) {
+        // Photons can leave a glass object by refraction, and paths can find a light in a room.
+        let passes = match scene_probe.is_physical() && !scene_probe.is_dark() {
+            true => lets_paths_pass(scene_probe, object),
+            false => scene_probe.input.job.method.prepares() && transmits(scene_probe, object),
+        };
+        if passes {
             return None;
         }
         let name = scene_probe.object(object);
@@ -91,12 +101,30 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
             .related(scene_probe.object_span(object), "the object around the light");
         Some(
             diagnostic.help(format!(
-                "move the light out of the object, for example to `position {}` above it",
-                vector(above)
+                "move the light out of the object, for example {}",
+                written_position(scene_probe, above)
             )),
         )
     }));
     findings
+}
+
+/// Returns a position as the scene file writes it: in the node grammar, the transform of the node
+/// that contains the light.
+fn written_position(scene_probe: &SceneProbe, place: Vec3) -> String {
+    let place = vector(place);
+    match scene_probe.input.dialect {
+        Dialect::F23 => format!("with `Transform {{ translate {place} }}` in its `Node`"),
+        _ => format!("to `position {place}`"),
+    }
+}
+
+/// Returns true if paths can connect a light inside an object with the camera: the object is not
+/// opaque, or it contains the camera.
+fn lets_paths_pass(scene_probe: &SceneProbe, object: u32) -> bool {
+    let eye = scene_probe.world().camera().pose().center;
+    super::area_lights::transmits_light(scene_probe, object)
+        || containing_objects(scene_probe.world(), eye).contains(&object)
 }
 
 /// Returns true if light can pass through the surface of an object.
@@ -271,7 +299,8 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
                 return Some(scene_probe.at_value(diagnostic, span, &["position"]).help(help));
             }
             let value = scene_probe.field_span(span, &["position"]);
-            let help = format!("raise the light out of the plane of the surface, for example to `position {raised}`");
+            let written = written_position(scene_probe, place);
+            let help = format!("raise the light out of the plane of the surface, for example {written}");
             Some(scene_probe.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
         }
     }

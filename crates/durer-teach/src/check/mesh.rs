@@ -1,13 +1,13 @@
 //! Checks the meshes of a scene: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
-use super::mesh_files::MeshFile;
 use super::mesh_files::topology::Topology;
+use super::mesh_files::{Inwards, MeshFile};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::dialect::Quirk;
-use durer_scene::math::{Aabb, Vec3};
+use durer_scene::math::Vec3;
 
 /// Fraction of zero-area triangles above which they cannot be only the poles of a surface of
 /// revolution.
@@ -30,7 +30,24 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
             .help("remove the triangles, or correct vertices that have the same index or position");
         findings.push(Finding::from(diagnostic).affecting_whole_picture(flat.len() == all));
     }
+    findings.extend(scene_probe.models().iter().filter_map(|mesh| degenerate_model(scene_probe, mesh)));
     findings
+}
+
+/// Reports the mesh of a model if at least half of its triangles have no area.
+fn degenerate_model(scene_probe: &SceneProbe, mesh: &MeshFile) -> Option<Finding> {
+    let (flat, all) = (mesh.topology.degenerate.len(), mesh.data.triangles.len());
+    if flat * 2 < all || all == 0 {
+        return None;
+    }
+    let index = scene_probe.world().objects().iter().position(|object| mesh.is_used_at(object.span))? as u32;
+    let name = scene_probe.object(index);
+    let count = counted(flat, "triangle", "triangles");
+    let diagnostic = Diagnostic::warning(format!("the {name} has {count} without area, of {all} in all"))
+        .at(scene_probe.object_span(index))
+        .effect("triangles without area are never hit, so they are invisible")
+        .help("correct the vertices of these triangles: some have the same position, or all are on one line");
+    Some(Finding::from(diagnostic).affecting_whole_picture(flat == all))
 }
 
 /// Reports holes and non-manifold edges in glass meshes, which must be closed.
@@ -78,63 +95,6 @@ pub(super) fn holes(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic));
     }
     findings
-}
-
-/// Ratio of the distance of stray vertices to the size of the rest of their mesh.
-const STRAY_DISTANCE: f32 = 50.0;
-/// Minimum number of the other vertices per stray vertex.
-const STRAY_SHARE: usize = 2;
-
-/// Reports meshes that have a few vertices far away from all others.
-pub(super) fn stray_points(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let all = scene_probe.meshes().iter().chain(scene_probe.models());
-    let say = |mesh: &MeshFile| {
-        let (strays, box_of_rest, far) = strays(&mesh.data.positions)?;
-        let message = format!(
-            "{} of `{}` far from the others, for example at {}",
-            counted(strays, "vertex is", "vertices are"),
-            mesh.name.path,
-            vector(far)
-        );
-        let diagnostic = Diagnostic::warning(message)
-            .at(mesh.name.span)
-            .effect(format!(
-                "the other {} vertices fill a box of only {}: in a picture of everything, they are a dot",
-                mesh.data.positions.len() - strays,
-                vector(box_of_rest.size())
-            ))
-            .help("check the coordinates of these vertices in the file, such as a missing decimal point or minus sign");
-        Some(Finding::from(diagnostic))
-    };
-    all.filter_map(say).take(super::finding::MAX_PER_KIND).collect()
-}
-
-/// Returns the number of vertices that are far from most, the bounding box of the others, and one
-/// of the vertices.
-fn strays(positions: &[Vec3]) -> Option<(usize, Aabb, Vec3)> {
-    for axis in 0..3 {
-        let mut values: Vec<f32> = positions.iter().map(|position| position[axis]).collect();
-        values.sort_by(f32::total_cmp);
-        let Some(gap) = (1..values.len()).max_by(|&a, &b| {
-            let gap = |i: usize| values[i] - values[i - 1];
-            gap(a).total_cmp(&gap(b))
-        }) else {
-            continue;
-        };
-        let (below, width) = (gap, values[gap] - values[gap - 1]);
-        let is_above = below * 2 > values.len();
-        let strays = if is_above { values.len() - below } else { below };
-        if strays * STRAY_SHARE >= values.len() {
-            continue;
-        }
-        let is_stray = |position: &Vec3| (position[axis] >= values[gap]) == is_above;
-        let rest = positions.iter().filter(|position| !is_stray(position));
-        let rest = rest.fold(Aabb::EMPTY, |all, position| all.union_point(*position));
-        if width > STRAY_DISTANCE * rest.size().length() && rest.size() != Vec3::ZERO {
-            return Some((strays, rest, *positions.iter().find(|position| is_stray(position))?));
-        }
-    }
-    None
 }
 
 /// Reports flat glass objects, which have no interior.
@@ -201,8 +161,8 @@ pub(super) fn large_faces<'s>(scene_probe: &SceneProbe<'s>) -> Vec<(&'s str, usi
     scene_probe.meshes().iter().filter_map(one).collect()
 }
 
-/// Reports mesh files that the dialect's program misreads. It drops their last line, or it assigns
-/// normals to other vertices than the faces do.
+/// Reports mesh files that the dialect's program misreads. It drops their last line, does not
+/// understand faces with normals, or assigns normals to other vertices than the faces do.
 pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
     let rules = scene_probe.world().rules();
     let mut findings = Vec::new();
@@ -224,8 +184,19 @@ pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
                     .fix(end, "\n");
             findings.push(Finding::from(diagnostic));
         }
+        if rules.has(Quirk::LostLastLine)
+            && let Some(span) = first_face(bytes, mesh.file, |corner| corner.matches('/').count() == 2)
+        {
+            let diagnostic = Diagnostic::warning(format!("faces of `{}` have normal indices", mesh.name.path))
+                .at(span)
+                .label("the first of them")
+                .related(mesh.name.span, "the mesh is used here")
+                .effect("this year's program understands only `f 1 2 3` and `f 1/1 2/2 3/3`, so it misreads the faces")
+                .help("export the mesh without normals");
+            findings.push(Finding::from(diagnostic));
+        }
         if rules.has(Quirk::NormalsByVertex)
-            && let Some(span) = different_normal_index(bytes, mesh.file)
+            && let Some(span) = first_face(bytes, mesh.file, has_different_normal)
         {
             let diagnostic = Diagnostic::warning(format!("faces of `{}` use normal indices that differ from the vertex indices", mesh.name.path))
                 .at(span)
@@ -240,20 +211,19 @@ pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
-/// Returns the first face in which a normal index differs from the vertex index.
-fn different_normal_index(bytes: &[u8], file: u32) -> Option<Span> {
+/// Returns true if the normal index of a corner differs from its vertex index.
+fn has_different_normal(corner: &str) -> bool {
+    let mut parts = corner.split('/');
+    matches!((parts.next(), parts.nth(1)), (Some(v), Some(n)) if !n.is_empty() && v != n)
+}
+
+/// Returns the first face of an OBJ file that has a corner with a property.
+fn first_face(bytes: &[u8], file: u32, is_wanted: impl Fn(&str) -> bool) -> Option<Span> {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
-        if line.starts_with(b"f ") {
-            let text = String::from_utf8_lossy(line);
-            let odd = |corner: &str| {
-                let mut parts = corner.split('/');
-                matches!((parts.next(), parts.nth(1)), (Some(v), Some(n)) if !n.is_empty() && v != n)
-            };
-            if text.split_ascii_whitespace().skip(1).any(odd) {
-                let end = start + line.trim_ascii_end().len();
-                return Some(Span { file, start: start as u32, end: end as u32 });
-            }
+        if line.starts_with(b"f ") && String::from_utf8_lossy(line).split_ascii_whitespace().skip(1).any(&is_wanted) {
+            let end = start + line.trim_ascii_end().len();
+            return Some(Span { file, start: start as u32, end: end as u32 });
         }
         start += line.len();
     }
@@ -288,7 +258,6 @@ pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
         .iter()
         .filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scene_probe) && !mesh.is_hollow(scene_probe))
     {
-        let by_file = mesh.odd_normals.is_some();
         let hit = scene_probe
             .hits()
             .filter(|(_, hit)| mesh.objects.iter().any(|o| scene_probe.object_span(hit.object).start == o.span.start));
@@ -299,9 +268,12 @@ pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
                 "a ray tracer that does not flip normals shows the mesh black; as glass, the mesh refracts light \
                  the wrong way",
             )
-            .help(match by_file {
-                true => "negate the `vn` vectors of the file",
-                false => "order the vertices of the faces counter-clockwise, as seen from outside",
+            .help(match mesh.inwards() {
+                Inwards::Normals => "negate the `vn` vectors of the file",
+                Inwards::Triangles => "order the vertices of the faces counter-clockwise, as seen from outside",
+                Inwards::Both => {
+                    "negate the `vn` vectors of the file, and reverse the order of the vertices of its faces"
+                }
             });
         findings.push(Finding::from(diagnostic).affecting_whole_picture(most));
     }
@@ -323,14 +295,18 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
             && !mesh.is_hollow(scene_probe)
             && mesh.compiled_objects(scene_probe).all(kept)
     });
+    let turned: Vec<&MeshFile> = turned.collect();
+    // If all meshes are inside out, the program that wrote the file reversed them.
+    let all = turned.len() == scene_probe.models().len();
     let say = |mesh: &MeshFile| {
         let index = scene_probe.world().objects().iter().position(|object| mesh.is_used_at(object.span))? as u32;
         let hit = scene_probe.hits().filter(|(_, hit)| mesh.is_used_at(scene_probe.object_span(hit.object))).count();
         let most = hit * 2 > scene_probe.hits().count();
-        let by_file = mesh.odd_normals.is_some();
-        let message = match by_file {
-            true => format!("the normals of the {} point inwards, against its triangles", scene_probe.object(index)),
-            false => format!("the {} is closed, but inside out", scene_probe.object(index)),
+        let name = scene_probe.object(index);
+        let message = match mesh.inwards() {
+            Inwards::Normals => format!("the normals of the {name} point inwards, against its triangles"),
+            Inwards::Triangles => format!("the {name} is closed, but inside out"),
+            Inwards::Both => format!("the {name} is inside out: its triangles and its normals point inwards"),
         };
         let diagnostic = Diagnostic::warning(message)
             .at(scene_probe.object_span(index))
@@ -338,15 +314,16 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
                 "programs that cull back faces show the inside of the mesh; as glass, the mesh refracts light the \
                  wrong way",
             )
-            .help(match by_file {
-                true => "negate the normals of the vertices",
-                false => "order the vertices of the faces counter-clockwise, as seen from outside",
+            .help(match mesh.inwards() {
+                Inwards::Normals => "negate the normals of the vertices",
+                Inwards::Triangles => "order the vertices of the faces counter-clockwise, as seen from outside",
+                Inwards::Both => "reverse the order of the vertices of each face, and negate the normals",
             });
         // Modelling programs often leave small inverted pieces that are hardly visible.
-        let severity = if most { Severity::Warning } else { Severity::Note };
+        let severity = if most || all { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
     };
-    turned.filter_map(say).collect()
+    turned.into_iter().filter_map(say).collect()
 }
 
 /// Returns true if an object uses a mesh that `inside-out` reports.

@@ -16,12 +16,14 @@ mod colors;
 mod completion;
 mod containment;
 mod depth;
+mod emission;
 mod exposure;
 mod extent;
 mod faces;
 mod facing;
 mod finding;
 mod fog;
+mod ground;
 mod hidden;
 mod integrator;
 mod invisible;
@@ -35,6 +37,7 @@ mod neutral;
 mod numbers;
 mod objects;
 mod optics;
+mod pattern_border;
 mod patterns;
 mod physical;
 pub mod picture;
@@ -45,15 +48,17 @@ mod repair;
 mod scene_probe;
 mod shapes;
 mod solid;
+mod strays;
 mod table;
 #[cfg(test)]
 mod tests;
+mod textures;
 mod transforms;
 mod verdict;
 mod view;
 mod visibility;
 
-use durer_diag::{Diagnostics, Severity};
+use durer_diag::{Diagnostic, Diagnostics, Severity};
 pub use finding::Finding;
 use finding::MAX_PER_KIND;
 pub use probes::CheckInput;
@@ -80,9 +85,14 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
             "lamp-blocked",
             "lamp-turned",
             "too-dark",
+            "too-bright",
         ],
     ),
     ("ALPHA_CUTOFF", &["not-there"]),
+    ("CAMERA_YFOV_GEQUAL_PI", &["too-small", "too-narrow", "camera-away", "all-missed"]),
+    ("dark-colors", &["too-dark", "black-material"]),
+    ("NODE_NO_SCENE", &["unused-material"]),
+    ("repeated", &["light-behind", "light-blocked", "light-faint", "too-dark", "unused-material"]),
     ("black-light", &["same-color", "too-dark", "one-color"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
@@ -97,7 +107,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("no-falloff", &["not-finite", "light-divides"]),
     ("stray-points", &["too-small", "all-missed", "one-color", "out-of-scale", "too-dark", "holes"]),
     ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "light-blocked", "upside-down"]),
-    ("hidden-behind", &["upside-down", "light-behind", "light-blocked"]),
+    ("hidden-behind", &["upside-down", "light-behind", "light-blocked", "lamp-blocked"]),
     ("degenerate-mesh", &["seen-from-behind"]),
     ("squashed", &["all-missed", "too-small", "tiny", "out-of-scale", "empty-solid"]),
     ("degenerate-triangle", &["all-missed", "unseen", "same-place"]),
@@ -168,6 +178,10 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
             (finding.diagnostic.severity, finding.affects_whole_picture) = (Severity::Warning, true);
         }
     }
+    let ignored = |finding: &Finding| finding.diagnostic.code == "foreign-word" && finding.affects_whole_picture;
+    if findings.iter().any(ignored) {
+        findings.retain(|finding| !["light-faint", "too-bright", "too-dark"].contains(&finding.diagnostic.code));
+    }
     // Drop findings that follow from a reported cause.
     for (cause, consequences) in CONSEQUENCES {
         if findings.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
@@ -215,6 +229,10 @@ fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
     let mut result: Vec<Finding> = Vec::with_capacity(findings.len());
     let mut more = 0;
     for finding in findings {
+        // Several lights or objects can use the same faulty file.
+        if result.iter().any(|other| is_repeated(&other.diagnostic, &finding.diagnostic)) {
+            continue;
+        }
         let alike = |other: &&Finding| {
             let (a, b) = (&finding.diagnostic, &other.diagnostic);
             a.code == b.code && a.severity == b.severity && a.severity != Severity::Error
@@ -229,4 +247,10 @@ fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
         }
     }
     result
+}
+
+/// Returns true if two diagnostics have the same message and the same place in a file.
+fn is_repeated(a: &Diagnostic, b: &Diagnostic) -> bool {
+    let place = |diagnostic: &Diagnostic| diagnostic.span.map(|span| (span.file, span.start, span.end));
+    a.severity == b.severity && a.message == b.message && place(a).is_some() && place(a) == place(b)
 }

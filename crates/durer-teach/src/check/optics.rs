@@ -117,7 +117,14 @@ pub(super) fn short_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
                 false => "the reflections are black",
             })
             .help("set `--bounces 16`, or omit `--bounces`");
-        Some(Finding::from(diagnostic))
+        Some(Finding::from(match super::depth::limit_of_file(scene_probe) {
+            Some((word, place)) => diagnostic
+                .at(place)
+                .label("")
+                .related(material.span, "the material")
+                .help(format!("increase `{word}`, or set `--bounces 16`")),
+            None => diagnostic,
+        }))
     };
     layers(scene_probe).into_iter().filter_map(say).take(1).collect()
 }

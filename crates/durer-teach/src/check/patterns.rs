@@ -2,18 +2,16 @@
 //! smaller than a pixel.
 
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
+use super::probes::Probe;
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_render::world::{Geometry, Material, World};
+use durer_render::world::{Material, World};
 use durer_scene::material::{ColorNoise, PatternMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as ParsedMaterial;
-use durer_scene::texture::Mapping;
 
 /// Number of steps per pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
-/// Number of changes within a pixel above which a pattern is only noise.
-const MAX_CHANGES: usize = 3;
 /// A pattern is invisible if its cells are wider than the scene by this factor.
 const MAX_CELL_SIZE: f32 = 3.0;
 /// Minimum number of visible points needed for a conclusion.
@@ -59,25 +57,19 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         let Some(look) = PatternSampler::of(world, number as u32) else { continue };
         // Use direct hits only, because a pattern nested in another one is visible only in some
         // places.
-        let points: Vec<(Vec3, f32)> = scene_probe
-            .hits()
-            .filter(|(_, hit)| hit.material as usize == number)
-            .map(|(probe, hit)| (probe.ray.at(hit.t), hit.t * probe.ray.dir.length()))
-            .collect();
+        let points: Vec<&Probe> =
+            scene_probe.hits().filter(|(_, hit)| hit.material as usize == number).map(|(probe, _)| probe).collect();
         if points.len() < MIN_POINTS {
             continue;
         }
-        let shares: Vec<f32> = points.iter().map(|(point, _)| look.at(*point)).collect();
-        let (least, most) = shares.iter().fold((f32::MAX, f32::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
+        let shares = points.iter().filter_map(|probe| Some(look.at(probe.ray.at(probe.hit.as_ref()?.t))));
+        let (least, most) = shares.fold((f32::MAX, f32::MIN), |(a, b), s| (a.min(s), b.max(s)));
         let width = pixel(scene_probe);
-        let across = [Vec3::new(0.8, 0.36, 0.48), Vec3::new(-0.48, 0.8, 0.36)];
-        let noisy = |&(point, away): &(Vec3, f32)| {
-            across.iter().all(|way| {
-                let step = |i: u32| look.at(point + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
-                (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MAX_CHANGES
-            })
+        let varies = |probe: &&&Probe| {
+            let ways = footprint(scene_probe, probe, width);
+            ways.is_some_and(|(point, ways)| ways.into_iter().any(|way| changes(&look, point, way)))
         };
-        let fine = points.iter().filter(|point| noisy(point)).count();
+        let fine = points.iter().filter(varies).count();
         let (message, effect, help) = if let Some((message, help)) = why_uniform(scene_probe, &look, &material.value) {
             (
                 message,
@@ -115,6 +107,23 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     findings
 }
 
+/// Returns the point that a probe hits, and the two sides of its pixel, projected onto the surface
+/// there.
+fn footprint(scene_probe: &SceneProbe, probe: &Probe, width: f32) -> Option<(Vec3, [Vec3; 2])> {
+    let (at, hit) = (scene_probe.world().intersect(&probe.ray, &mut ())?, probe.hit.as_ref()?);
+    let (n, dir) = (at.surface.n_geo, probe.ray.dir.normalize_or_zero());
+    let (tilt, side) = (n - n.dot(dir) * dir, hit.t * probe.ray.dir.length() * width);
+    let upwards = tilt.try_normalize().unwrap_or_else(|| dir.any_orthonormal_vector());
+    let onto_surface = |way: Vec3| side * (way - dir * (way.dot(n) / dir.dot(n)));
+    Some((at.surface.position, [upwards, upwards.cross(dir)].map(onto_surface)))
+}
+
+/// Returns true if a pattern changes between its two parts along a line on a surface.
+fn changes(look: &PatternSampler, from: Vec3, way: Vec3) -> bool {
+    let first = look.at(from) > 0.5;
+    (1..=STEPS).any(|i| (look.at(from + way * (i as f32 / STEPS as f32)) > 0.5) != first)
+}
+
 /// Uses the scene description to explain why a pattern does not vary, if possible.
 fn why_uniform(
     scene_probe: &SceneProbe,
@@ -145,48 +154,6 @@ fn why_uniform(
     );
     let help = "check the `Scale` of the `Transform`: the cells of the pattern are larger than the visible scene";
     (cell > MAX_CELL_SIZE * size).then_some((message, help))
-}
-
-/// Returns true if a mapping gives all points the same texture coordinates.
-fn is_constant(mapping: &Mapping) -> bool {
-    mapping.transform.iter().all(|row| row[..2] == [0.0, 0.0])
-}
-
-/// Reports textures that show a single colour. Either the image has only one colour, or all
-/// vertices of a mesh have the same texture coordinates.
-pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let world = scene_probe.world();
-    let mut findings = Vec::new();
-    for (number, material) in scene_probe.input.scene.materials.iter().enumerate().take(MAX_FINDINGS) {
-        let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
-        let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
-        let own = || world.objects().iter().filter(|object| object.material as usize == number);
-        let is_still =
-            |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.constant_uv().is_some());
-        let one_place = own().find(|object| is_still(&object.geometry));
-        let (message, help) = if scene_probe.material_rays()[number] == 0 {
-            continue;
-        } else if texture.is_flat() {
-            (
-                format!("the texture of material {number} has only one colour"),
-                "check whether the image is the right one",
-            )
-        } else if texture.mapping().is_some_and(is_constant) {
-            (
-                format!("the `uvTransform` of the texture of material {number} maps all points to one texel"),
-                "write `uvTransform { 1 0 0  0 1 0 }`, which leaves texture coordinates unchanged",
-            )
-        } else if let Some(object) = one_place {
-            let name = scene_probe.text(object.span);
-            let message = format!("all vertices of the `{name}` have the same texture coordinates");
-            (message, "export the texture coordinates of the mesh: the `vt` lines of its file are all equal")
-        } else {
-            continue;
-        };
-        let diagnostic = Diagnostic::warning(message).effect("the texture is invisible").help(help);
-        findings.push(Finding::from(scene_probe.at_value(diagnostic, material.span, &["texture"])));
-    }
-    findings
 }
 
 /// Estimates the width of a pixel at distance 1.

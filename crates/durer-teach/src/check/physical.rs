@@ -29,7 +29,7 @@ const DARKNESS_CHECKS: &[&str] = &["light-inside", "light-blocked", "light-behin
 
 /// Returns true if a check is for local lighting and does not apply to the scene.
 pub(super) fn does_not_apply(scene_probe: &SceneProbe, code: &str) -> bool {
-    let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark();
+    let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark() || code == "light-inside";
     scene_probe.is_physical() && LOCAL_LIGHT_CHECKS.contains(&code) && !says_why()
 }
 

@@ -193,7 +193,10 @@ impl<'a> ProbeGrid<'a> {
         let (span, files) = (self.object_span(number), self.input.files);
         let (line, column) = files.position(span).unwrap_or_default();
         let file = files.name(span.file).filter(|_| span.file != 0);
+        // Lines of a binary file have no meaning.
+        let is_binary = files.bytes(span.file).is_some_and(|bytes| bytes.contains(&0));
         match (self.names().name_without_keyword(number), file) {
+            (Some(name), _) if is_binary => name,
             (Some(name), None) => format!("{name} at {line}:{column}"),
             (Some(name), Some(file)) => format!("{name} at {file}:{line}:{column}"),
             (None, None) => format!("`{}` of line {line}", self.text(span)),

@@ -5,7 +5,8 @@ use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
     area_lights, attenuation, beams, clipping, colors, exposure, extent, facing, fog, hidden, integrator, invisible,
-    layers, lens, lights, mesh, names, numbers, objects, optics, patterns, physical, quadrics, quirks, solid, view,
+    layers, lens, lights, mesh, names, numbers, objects, optics, pattern_border, patterns, physical, quadrics, quirks,
+    solid, strays, textures, view,
 };
 
 /// A kind of finding, with its stable code and the function that searches for it. Each is a row of
@@ -47,6 +48,7 @@ checks! {
     "bad-file": "a mesh or image that cannot be used", reported;
     "open-solid": "a part of a solid that is not closed", reported;
     "no-objects": "a scene without objects", view::no_objects;
+    "repeated": "a section or field that appears twice", reported;
     // The camera.
     "far-origin": "a scene so far from the origin that single precision cannot resolve its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program starts shadow rays", lens::below_epsilon;
@@ -54,7 +56,7 @@ checks! {
     "clipped": "clip distances that cut away everything in the picture", clipping::clipped;
     "camera-away": "a camera that looks past everything", view::looks_elsewhere;
     "up-parallel": "a camera whose `up` is parallel to its `direction`", reported;
-    "stray-points": "a few vertices of a mesh far away from all others", mesh::stray_points;
+    "stray-points": "a few vertices of a mesh far away from all others", strays::stray_points;
     "too-small": "objects that together are too small in the picture", extent::too_small;
     "too-narrow": "a picture that shows a tiny part of the scene", extent::too_narrow;
     "no-surface": "a quadric whose equation has no real solution", quadrics::no_surface;
@@ -103,6 +105,7 @@ checks! {
     "tiny-highlight": "a highlight smaller than a pixel", quirks::tiny_highlight;
     "same-parts": "a pattern with two equal parts", quirks::same_parts;
     "pattern-scale": "a pattern that shows only one part, or is finer than a pixel", patterns::scale;
+    "pattern-border": "a surface exactly on the border between the cells of a checkerboard", pattern_border::on_border;
     "material-index": "a `MaterialIndex` without a material", reported;
     "no-material": "objects before any `MaterialIndex`", reported;
     "not-there": "a material of opacity 0", layers::zero_opacity;
@@ -118,14 +121,15 @@ checks! {
     "odd-index": "glass with an impossible index of refraction", colors::odd_index;
     "same-color": "objects with the colour of the background", colors::background_colored;
     "no-coordinates": "a texture on an object without texture coordinates", colors::no_coordinates;
-    "flat-texture": "a texture that shows only one colour", patterns::flat_texture;
+    "flat-texture": "a texture that shows only one colour", textures::flat_texture;
+    "normal-map": "a normal map that is grey, like a map of heights", textures::normal_maps;
     // Shapes and meshes.
     "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
     "turned-triangle": "triangles that face the opposite way from their neighbours", facing::turned_triangles;
     "winding": "triangles of a mesh with the opposite winding to their neighbours", mesh::winding;
     "inside-out": "a closed mesh whose normals point inwards", mesh::inside_out;
     "odd-normals": "normals of a mesh file that contradict its faces, are missing or have zero length", mesh::file_normals;
-    "misread-mesh": "a mesh file that this year's program reads with a missing line or different normals", mesh::quirky_files;
+    "misread-mesh": "a mesh file that this year's program reads with a missing line, other faces or other normals", mesh::quirky_files;
     "flat-field": "a height field that is flat", invisible::flat_field;
     "open-mesh": "a mesh with holes through which its inside is visible", mesh::holes;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
@@ -146,7 +150,6 @@ checks! {
     // These are unusual but mostly harmless.
     "dialect": "the dialect that was detected for the scene", reported;
     "radians": "a rotation that may be in radians", extent::radians;
-    "repeated": "a section or field that appears twice", reported;
     "foreign-word": "a word from the dialect of another year", reported;
     "portability": "a scene that the official program of that year would reject", reported;
     "comment": "a comment that does not begin with `#`", reported;

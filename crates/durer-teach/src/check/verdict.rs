@@ -130,9 +130,9 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightV
     if all.is_empty() || visible as f32 > MIN_LIT_SHARE * all.len() as f32 && !is_blocked {
         return LightVerdict::Works;
     }
-    if let Some(point) = point(light)
+    if let Some(position) = light.position()
         && let Some(&object) =
-            containing_objects(grid.world(), point.position).iter().find(|&&object| encloses_light(grid, object, &all))
+            containing_objects(grid.world(), position).iter().find(|&&object| encloses_light(grid, object, &all))
     {
         return LightVerdict::Inside(object);
     }

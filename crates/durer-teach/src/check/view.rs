@@ -162,7 +162,9 @@ fn all_outside(scene_probe: &SceneProbe) -> bool {
 
 /// Reports a camera whose picture shows no bounded object because the camera points elsewhere.
 pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let Some(bounds) = target(scene_probe).filter(|_| all_outside(scene_probe)) else { return Vec::new() };
+    let Some(bounds) = target(scene_probe).filter(|_| all_outside(scene_probe)) else {
+        return super::ground::shows_only_ground(scene_probe).into_iter().collect();
+    };
     let (world, span) = (scene_probe.world(), scene_probe.input.scene.camera_span);
     let (pose, center) = (world.camera().pose(), bounds.center());
     let mut ended = world.objects().iter().filter(|object| object.bounds().is_some()).peekable();
@@ -243,7 +245,12 @@ fn aims_widely(scene_probe: &SceneProbe, place: Vec3) -> bool {
 }
 
 /// Adds the edit that replaces a vector field of the camera.
-fn with_field_edit(scene_probe: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
+pub(super) fn with_field_edit(
+    scene_probe: &SceneProbe,
+    diagnostic: Diagnostic,
+    field: &str,
+    value: Vec3,
+) -> Diagnostic {
     let span = scene_probe.input.scene.camera_span;
     match scene_probe.field_span(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
         Some(place) => diagnostic.at(place).fix(place, vector(value)),

@@ -10,7 +10,7 @@ use durer_formats::read_mesh;
 use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::camera::Projection;
 use durer_scene::describe::FileName;
-use durer_scene::math::Aabb;
+use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::{Object, ObjectKind, Scene};
 use durer_scene::shape::MeshData;
 use normals::InvalidNormals;
@@ -38,6 +38,15 @@ pub(in crate::check) struct MeshFile<'s> {
     pub(super) odd_normals: Option<InvalidNormals>,
 }
 
+/// Part of a mesh that points inwards: the order of the vertices of its triangles, the normals in
+/// its file, or both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::check) enum Inwards {
+    Triangles,
+    Normals,
+    Both,
+}
+
 /// Returns all mesh files of a scene.
 pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses(grid.input.scene).into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
@@ -54,6 +63,10 @@ pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
         Some(MeshFile::new(grid, name, u32::MAX, objects, MeshData::clone(data)))
     };
     uses(grid.input.scene).into_iter().filter_map(own).collect()
+}
+
+fn is_obj(name: &str) -> bool {
+    name.to_ascii_lowercase().ends_with(".obj")
 }
 
 /// Mesh files of a scene, each with the objects that use it.
@@ -114,6 +127,24 @@ impl MeshFile<'_> {
         found.filter(|_| before == self.data.triangles.len())
     }
 
+    /// Returns the line of an OBJ file that contains the vertex at a position.
+    pub(super) fn vertex(&self, grid: &ProbeGrid, position: Vec3) -> Option<Span> {
+        let file = if self.file == u32::MAX { self.name.span.file } else { self.file };
+        let bytes = grid.input.files.bytes(file).filter(|_| grid.input.files.name(file).is_some_and(is_obj))?;
+        let mut start = 0;
+        for line in bytes.split_inclusive(|b| *b == b'\n') {
+            let text = str::from_utf8(line).unwrap_or_default().trim();
+            let mut words = text.strip_prefix("v ").unwrap_or_default().split_ascii_whitespace();
+            let numbers = [(); 3].map(|()| words.next().and_then(|word| word.parse::<f32>().ok()));
+            if numbers == position.to_array().map(Some) {
+                let end = start + line.trim_ascii_end().len();
+                return Some(Span { file, start: start as u32, end: end as u32 });
+            }
+            start += line.len();
+        }
+        None
+    }
+
     /// Places a warning about triangles at the first of them, or at the place where the scene names
     /// the file.
     pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
@@ -169,10 +200,24 @@ impl MeshFile<'_> {
         })
     }
 
+    /// Returns what points inwards in a mesh that is inside out.
+    pub(super) fn inwards(&self) -> Inwards {
+        match &self.odd_normals {
+            None => Inwards::Triangles,
+            Some(normals) if normals.is_against_all() => Inwards::Normals,
+            Some(_) => Inwards::Both,
+        }
+    }
+
     /// Returns true if the mesh is closed and its normals point inwards.
     pub(super) fn is_inside_out(&self) -> bool {
         let Topology { reversed: turned, volume, .. } = &self.topology;
         let against = self.odd_normals.as_ref().is_some_and(InvalidNormals::is_against_all);
-        self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
+        let has_area = self.topology.degenerate.len() < self.data.triangles.len();
+        has_area
+            && self.topology.is_nearly_closed()
+            && turned.is_empty()
+            && *volume != 0.0
+            && (*volume < 0.0) != against
     }
 }
