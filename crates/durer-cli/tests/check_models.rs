@@ -176,7 +176,7 @@ const CASES: &[Case] = &[
     ("xml", MITSUBA, &[("name=\"max_depth\" value=\"8\"", "name=\"max_depth\" value=\"1\"")], "no-bounces"),
     ("xml", MITSUBA, &[("angle=\"90\"", "angle=\"-90\"")], "lamp-turned"),
     ("xml", MITSUBA, &[("angle=\"-90\"", "angle=\"90\"")], "seen-from-behind"),
-    // The lamp lies in the floor, because it is moved before it is turned.
+    // The light lies in the floor, because it is moved before it is turned.
     (
         "xml",
         MITSUBA,
@@ -324,9 +324,9 @@ fn models_whose_only_light_misses_them_are_reported() {
 fn emission_in_bytes_is_reported_at_its_statement() {
     let folder = TestFolder::new();
     let floor = "v -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl floor\nf 1 4 3 2\n";
-    let lamp = "v -3 0 -4\nv 3 0 -4\nv 3 6 -4\nv -3 6 -4\nusemtl lamp\nf 5 6 7 8\n";
-    folder.write("m.obj", format!("mtllib m.mtl\n{floor}{lamp}"));
-    folder.write("m.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\nKe 255 204 102\nnewmtl floor\nKd 0.5 0.5 0.5\n");
+    let glow = "v -3 0 -4\nv 3 0 -4\nv 3 6 -4\nv -3 6 -4\nusemtl glow\nf 5 6 7 8\n";
+    folder.write("m.obj", format!("mtllib m.mtl\n{floor}{glow}"));
+    folder.write("m.mtl", "newmtl glow\nKd 0.5 0.5 0.5\nKe 255 204 102\nnewmtl floor\nKd 0.5 0.5 0.5\n");
     let output = folder.expect_exit(1, "check m.obj").out;
     assert!(output.contains("m.mtl:3:1") && output.contains("`Ke 1 0.8 0.4`"), "{output}");
 }
@@ -346,7 +346,7 @@ fn a_cutoff_above_1_hides_the_material() {
     assert_eq!(picture(&cut), picture(&without));
 }
 
-/// Lamps outside the picture are normal, so they are not mentioned.
+/// Lights outside the picture are normal, so they are not mentioned.
 #[test]
 fn lamps_outside_the_picture_are_not_mentioned() {
     let folder = TestFolder::new();

@@ -412,8 +412,8 @@ impl Reader<'_, '_> {
         Some(error.help(format!("colours are three numbers from 0 to 1: `{numbers}`")).fix(span, numbers))
     }
 
-    /// Reports a field that takes one number in some dialects and three in others, and has the wrong
-    /// number of values for this dialect.
+    /// Reports a field that takes one number in some dialects and three in others, and has the
+    /// wrong number of values for this dialect.
     fn report_foreign_count(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
         if self.options.strict || dialect == Dialect::Durer {

@@ -186,8 +186,8 @@ impl Model<'_> {
         views.items().map(|view| self.view_of(&view)).collect()
     }
 
-    /// Returns the index of a buffer view, and that of another one of which it contains a part. Views
-    /// with the same range are not reported.
+    /// Returns the index of a buffer view, and that of another one of which it contains a part.
+    /// Views with the same range are not reported.
     pub(super) fn overlapping(&self, view: &BufferView) -> Option<(usize, usize)> {
         let own = view.slice.as_ref()?;
         let range_of = |i: usize| {

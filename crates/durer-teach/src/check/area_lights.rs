@@ -224,8 +224,8 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// Returns the help about an area light of a model that faces away. A light that lies in the surface
-/// of another object is in the wrong place.
+/// Returns the help about an area light of a model that faces away. A light that lies in the
+/// surface of another object is in the wrong place.
 fn model_help(scene_probe: &SceneProbe, number: u32) -> String {
     let object = &scene_probe.world().objects()[number as usize];
     let center = object.bounds().map_or(Vec3::ZERO, |bounds| bounds.center());

@@ -7,14 +7,14 @@ use durer_diag::{Diagnostic, Span};
 use durer_render::world::Material;
 use durer_scene::math::Color;
 
-/// Brightness below which surfaces count as black, and below which lamps are dim.
+/// Brightness below which surfaces count as black, and below which lights are dim.
 const DARK: f32 = 0.02;
 const DIM: f32 = 0.3;
 /// Emission that is brighter than the background by this factor determines the exposure.
 const MIN_RATIO: f32 = 8.0;
 
 /// Returns the brightness of the surfaces that do not emit light if it is nearly black, and the
-/// lamps in the picture are dim as well.
+/// lights in the picture are dim as well.
 pub(super) fn dim_surfaces(scene_probe: &SceneProbe) -> Option<f32> {
     if !scene_probe.is_physical() || scene_probe.lacks_photons() {
         return None;

@@ -207,7 +207,7 @@ fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let most = lit.unwrap_or_else(|| brightest(scene_probe.exposed_colors()));
     let message = match most < 1e-6 {
-        _ if lit.is_some() => format!("apart from lamps, the brightest value in the picture is only {}", number(most)),
+        _ if lit.is_some() => format!("apart from lights, the brightest value in the picture is only {}", number(most)),
         true => "nearly the whole picture is black: hardly any light reaches the camera".to_string(),
         false => format!("the brightest value in the picture is only {}", number(most)),
     };

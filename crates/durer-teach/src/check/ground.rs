@@ -13,8 +13,8 @@ const MAX_HEIGHT: f32 = 0.02;
 /// Minimum number of objects outside the picture.
 const MIN_OBJECTS: usize = 2;
 
-/// Reports a camera outside of whose picture are all objects except the ground below it. Lamps do
-/// not count.
+/// Reports a camera outside of whose picture are all objects except the ground below it. Lights
+/// do not count.
 pub(super) fn shows_only_ground(scene_probe: &SceneProbe) -> Option<Finding> {
     let world = scene_probe.world();
     let eye = world.camera().pose().center;

@@ -27,7 +27,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         return findings;
     }
     let all = (0..visibilities.len() as u32).filter(|i| !nothing.contains(i));
-    // A lamp outside the picture is normal.
+    // A light outside the picture is normal.
     let is_lamp = |i: u32| scene_probe.world().may_emit(scene_probe.world().objects()[i as usize].material);
     let outside = |i: &u32| visibilities[*i as usize] == Visibility::Outside && !is_lamp(*i);
     let out: Vec<u32> = all.clone().filter(outside).collect();
