@@ -234,7 +234,13 @@ const CLICKS: &str = r##"
   await wait();
   see(`tested ${count(".tests .test")}`);
   const space = find("canvas.rays"), shown = () => space.toDataURL();
-  const still = shown();
+  // The view may still be drawing.
+  let still = shown();
+  for (let last = ""; last !== still; ) {
+    last = still;
+    await wait();
+    still = shown();
+  }
   mouse(space, "pointermove", 0.99, 0.99, 0);
   await wait();
   see(`unheld ${shown() === still}`);
