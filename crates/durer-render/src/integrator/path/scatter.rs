@@ -10,6 +10,21 @@ use durer_scene::spectrum::Spectrum;
 /// Maximum survival probability in Russian roulette.
 const MAX_SURVIVAL: f32 = 0.95;
 
+/// Returns the probability that a path survives Russian roulette. `fraction` is the fraction of
+/// light that is left after the next scattering event.
+///
+/// Roulette starts after three rough bounces. Mirrors and smooth glass do not count, because the
+/// path still has to reach the surfaces behind them: a glass of water then takes a third of the
+/// time to equal error. Starting after five rough bounces takes longer, also in a Cornell box.
+fn survival(state: &PathState, fraction: f32) -> f32 {
+    match (state.depth, state.rough_bounces) {
+        (0..3, _) => 1.0,
+        // Reflections between mirrors need not continue once hardly any light is left.
+        (_, 0..3) => (10.0 * fraction).min(1.0),
+        _ => fraction.min(MAX_SURVIVAL),
+    }
+}
+
 impl Path<'_> {
     /// Continues the path in the sampled direction or, if the vertex splits, in several directions,
     /// which become pending branches. Returns true if the active branch continues afterwards.
@@ -49,10 +64,8 @@ impl Path<'_> {
         listener: &mut T,
     ) -> bool {
         let throughput = state.throughput * sample.weight;
-        let survival = match state.depth {
-            0..3 => 1.0,
-            _ => throughput.max_element().min(MAX_SURVIVAL),
-        };
+        let squared_eta = state.squared_eta * vertex.kind.squared_eta(sample);
+        let survival = survival(state, throughput.max_element() * squared_eta);
         if survival < 1.0 && vertex.random(Dimension::Survival).x >= survival {
             return false;
         }
@@ -61,18 +74,19 @@ impl Path<'_> {
             // Light samples do not compete with a delta lobe, unless the lobe transmits light
             // straight through the surface.
             state.prev_vertex = state.prev_vertex.filter(|_| self.sees_through(vertex, sample.lobe, state));
-            state.is_caustic |= state.had_rough_bounce;
+            state.is_caustic |= state.rough_bounces > 0;
         } else {
             let pdf = vertex.directions as f32 * sample.pdf;
             state.prev_vertex = Some(PrevVertex { receiver: vertex.receiver, pdf, tries: vertex.candidates });
             state.is_caustic = false;
-            state.had_rough_bounce = true;
+            state.rough_bounces += 1;
             state.camera_distance = None;
         }
         if let Some(media) = vertex.kind.media_behind(sample.wi) {
             state.media = media.clone();
         }
         state.throughput = throughput / survival;
+        state.squared_eta = squared_eta;
         state.depth += 1;
         state.ray = vertex.kind.spawn(sample.wi);
         let node = listener.begin(state.node, || TermKind::Ray {

@@ -53,6 +53,10 @@ pub(super) struct PathState {
     /// Product of BSDF · cosine / pdf, 1 / survival probability, and transmittance since the
     /// camera, by lane; at least 0. It affects Russian roulette and the sampling of media.
     pub(super) throughput: Spectrum,
+    /// Product of the squared relative indices of refraction since the camera; greater than 0. The
+    /// throughput times `squared_eta` is the fraction of light that is left: radiance is smaller in
+    /// clear glass, but no light is lost there. It affects only Russian roulette.
+    pub(super) squared_eta: f32,
     /// Share of the pixel that this branch represents, which is 1 / (number of branches). It is
     /// separate from `throughput` so that Russian roulette does not end branches sooner than paths
     /// that were not split.
@@ -70,8 +74,8 @@ pub(super) struct PathState {
     pub(super) prev_vertex: Option<PrevVertex>,
     /// True if photons are sent to the last surface that scattered the path.
     pub(super) prev_is_photon_target: bool,
-    /// True after scattering from a lobe that is not a delta lobe.
-    pub(super) had_rough_bounce: bool,
+    /// Number of scattering events from lobes that are not delta lobes.
+    pub(super) rough_bounces: u32,
     /// True if delta lobes follow a rough bounce. In this case, photons account for the lights that
     /// the path hits.
     pub(super) is_caustic: bool,
@@ -103,13 +107,14 @@ impl PathState {
         PathState {
             ray,
             throughput: Spectrum::ONE,
+            squared_eta: 1.0,
             pixel_share: 1.0,
             depth: 0,
             sample,
             media,
             prev_vertex: None,
             prev_is_photon_target: false,
-            had_rough_bounce: false,
+            rough_bounces: 0,
             is_caustic: false,
             monochromatic: false,
             camera_distance: Some(0.0),

@@ -176,9 +176,11 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns true if a lobe refracts, which scales radiance by the squared index of refraction.
-    pub(super) fn refracts(&self, lobe: usize) -> bool {
-        self.nth_lobe(lobe).is_some_and(|lobe| lobe.is_delta() && lobe.kind().eta.is_some())
+    /// Returns the factor that takes the scaling of radiance by refraction out of the weight of a
+    /// sample. It is the squared relative index of refraction, or 1 without refraction.
+    pub(super) fn squared_eta(&self, sample: &BsdfSample) -> f32 {
+        let lobe = if sample.transmits { self.nth_lobe(sample.lobe) } else { None };
+        lobe.and_then(|lobe| lobe.kind().eta).map_or(1.0, |eta| eta * eta)
     }
 
     /// Returns true if a lobe transmits light straight through an open surface, such as a window

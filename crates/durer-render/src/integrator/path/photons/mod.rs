@@ -197,7 +197,7 @@ impl PhotonTracer {
                 return None;
             }
             // Radiance scales with the square of the index of refraction, but power does not.
-            let weight = sample.weight * if vertex.refracts(sample.lobe) { eta * eta } else { 1.0 };
+            let weight = sample.weight * vertex.squared_eta(&sample);
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);
             if numbers.pair(2).x >= survival || survival.is_nan() {
