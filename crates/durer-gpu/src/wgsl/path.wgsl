@@ -15,8 +15,10 @@ struct PathState {
     // Point and density of the last direction, if lights were sampled there; else the density is 0.
     last_point: vec3<f32>,
     last_pdf: f32,
-    // True if all vertices so far had a single direction.
-    seen: bool,
+    // Number of vertices so far that did not have a single direction.
+    rough_bounces: u32,
+    // Product of the squared relative indices of refraction since the camera.
+    squared_eta: f32,
 }
 
 // Returns the weight of a strategy with density `a` when another one has density `b`.
@@ -41,7 +43,7 @@ fn contribution(factor: vec3<f32>, light: vec3<f32>, scatterings: u32) -> vec3<f
 // Returns the light of the background and of suns that the ray shows.
 fn background_light(state: PathState) -> vec3<f32> {
     var light = params.sky;
-    if state.seen {
+    if state.rough_bounces == 0u {
         let dir = unit_or(state.ray.dir, vec3<f32>(0.0));
         for (var i = 0u; i < params.light_count; i++) {
             let offset = lights[i].position - dir;
@@ -122,8 +124,19 @@ fn entered_ior(parts: Parts) -> f32 {
     return ior;
 }
 
+// Returns the probability that a path survives Russian roulette, as `survival` on the CPU.
+fn survival_probability(state: PathState, fraction: f32) -> f32 {
+    if state.depth < 3u {
+        return 1.0;
+    }
+    if state.rough_bounces < 3u {
+        return min(10.0 * fraction, 1.0);
+    }
+    return min(fraction, MAX_SURVIVAL);
+}
+
 fn path_radiance(camera_ray: Ray, key: vec2<u32>, sample: u32) -> vec3<f32> {
-    var state = PathState(camera_ray, vec3<f32>(1.0), 0u, air(), vec3<f32>(0.0), 0.0, true);
+    var state = PathState(camera_ray, vec3<f32>(1.0), 0u, air(), vec3<f32>(0.0), 0.0, 0u, 1.0);
     var radiance = vec3<f32>(0.0);
     var passed = 0u;
     loop {
@@ -169,20 +182,20 @@ fn path_radiance(camera_ray: Ray, key: vec2<u32>, sample: u32) -> vec3<f32> {
             break;
         }
         let throughput = state.throughput * next.weight;
-        var survival = 1.0;
-        if state.depth >= 3u {
-            survival = min(max_component(throughput), MAX_SURVIVAL);
-            if random_pair(key, sample, first + 3u).x >= survival {
-                break;
-            }
+        let passes = ior > 0.0 && dot(next.wi, bsdf.n_geo) < 0.0;
+        if passes {
+            let eta = transition.ior_behind / transition.ior_front;
+            state.squared_eta *= eta * eta;
+            state.media = transition.behind;
+        }
+        let survival = survival_probability(state, max_component(throughput) * state.squared_eta);
+        if survival < 1.0 && random_pair(key, sample, first + 3u).x >= survival {
+            break;
         }
         state.throughput = throughput / survival;
         state.last_pdf = next.pdf;
         state.last_point = surface.position;
-        state.seen = state.seen && next.pdf == 0.0;
-        if ior > 0.0 && dot(next.wi, bsdf.n_geo) < 0.0 {
-            state.media = transition.behind;
-        }
+        state.rough_bounces += select(0u, 1u, next.pdf > 0.0);
         state.ray = spawn_ray(surface, next.wi, FAR);
         state.depth += 1u;
     }
