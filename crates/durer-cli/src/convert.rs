@@ -47,8 +47,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_json = name.to_lowercase().ends_with(".json");
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
-        // The default ground plane is not part of the model.
-        options.scene_defaults.lighting = Some(DefaultLighting::None);
+        // The ground plane of studio lights is not part of the model.
+        options.scene_defaults.lighting = options.scene_defaults.lighting.and(Some(DefaultLighting::None));
+        options.scene_defaults.own_light = true;
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());

@@ -1,6 +1,8 @@
 //! Loading of scenes from files. The loader detects the format and the dialect, applies the rules
 //! of the dialect, and finds assets.
 
+mod model_options;
+
 use crate::camera_placement::CameraPlacement;
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
@@ -17,6 +19,7 @@ use durer_render::world::World;
 use durer_scene::dialect::{Dialect, DialectRules, PathBase, Quirk};
 use durer_scene::scene::{Scene, SceneDefaults};
 use durer_scene::source::{AssetSource, SourceError};
+use model_options::{refuse_for_model, refuse_for_scene};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -143,6 +146,10 @@ pub fn load_text(
         return None;
     }
     if let Some(format) = format {
+        refuse_for_model(format.name, &options.scene_defaults, diagnostics);
+        if diagnostics.has_errors() {
+            return None;
+        }
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));
@@ -154,10 +161,8 @@ pub fn load_text(
         let scene = scene?;
         return Some(LoadedScene { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
     }
-    if options.scene_defaults.orbit_degrees.is_some() {
-        let error = Diagnostic::error("`--turntable` cannot rotate around this scene, because it has its own camera");
-        let help = "convert it with `durer convert` to a glTF file, a model that `--turntable` rotates around";
-        diagnostics.push(error.help(help));
+    refuse_for_scene(&options.scene_defaults, diagnostics);
+    if diagnostics.has_errors() {
         return None;
     }
     let mut guess = None;
