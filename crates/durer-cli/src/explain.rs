@@ -6,15 +6,17 @@ use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::job::job;
 use crate::open::{CompiledInput, load_options, open};
-use crate::options::{RenderArgs, accel, aspect};
+use crate::options::{JobArgs, SceneArgs, ViewArgs, accel, aspect};
 use crate::terminal::print_line;
 use crate::values::{percent, pixel};
 use crate::{output, progress};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use durer::film::aov::Aov;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::math::{Color, Ray, Vec3};
+use durer::options::{crop, doc};
 use durer::render::explain::{
     ExplainOptions, Explanation, SceneNames, TextLine, explain_ray, explain_samples, number, ray_text,
 };
@@ -34,12 +36,25 @@ use std::sync::Arc;
   durer explain scene.txt --brightest --html why.html
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
 
-Pass the same options as to `durer render`, because the colour depends on them. Output options have no effect here. With one
+Pass the same options as to `durer render`, because the colour depends on them, except those of the files to write. With one
 sample per pixel, the ray through the pixel centre is explained.")]
 pub struct ExplainArgs {
+    /// Scene or model file
+    pub scene: PathBuf,
     #[command(flatten)]
-    pub render: RenderArgs,
-
+    pub reading: SceneArgs,
+    #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop, help = doc("crop"))]
+    pub crop: Option<(u32, u32, u32, u32)>,
+    #[command(flatten)]
+    pub job: JobArgs,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]
+    pub threads: Option<u16>,
+    /// Transfer curve of the 8-bit colours
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Print only errors and the explanation
+    #[arg(short, long)]
+    pub quiet: bool,
     /// Pixel to explain; column and row are counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
@@ -70,14 +85,14 @@ pub struct ExplainArgs {
     pub html: Option<PathBuf>,
 }
 
-/// Splits the numbers of a quoted `--ray` into separate words because clap would treat `-1 0 0` as
-/// an option.
+/// Splits the numbers of a `--ray`, which are separated by spaces or commas, into separate words
+/// because clap would treat `-1 0 0` as an option.
 pub fn split_ray_argument(words: Vec<OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::with_capacity(words.len());
     for word in words {
         match word.to_str() {
-            Some(text) if all.last().is_some_and(|last| last == "--ray") && text.contains(' ') => {
-                all.extend(text.split_whitespace().map(OsString::from));
+            Some(text) if all.last().is_some_and(|last| last == "--ray") && text.contains([' ', ',']) => {
+                all.extend(text.split([' ', ',']).filter(|word| !word.is_empty()).map(OsString::from));
             }
             _ => all.push(word),
         }
@@ -87,18 +102,14 @@ pub fn split_ray_argument(words: Vec<OsString>) -> Vec<OsString> {
 
 /// Runs `durer explain`.
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
-    if args.render.work.time.is_some() {
-        return Err(invalid_input(
-            "--time-limit leads to a different number of samples on each run: set the number with --samples instead",
-        ));
-    }
-    let mut options = load_options(&args.render.reading);
-    options.accel = accel(&args.render.job)?;
-    options.scene_defaults.aspect = aspect(&args.render.job);
+    let mut options = load_options(&args.reading);
+    options.accel = accel(&args.job)?;
+    options.scene_defaults.aspect = aspect(&args.job);
     let mut registry = FileRegistry::default();
     let page_file = args.html.as_ref().map(|path| registry.register_output("--html", path)).transpose()?;
-    let compiled = open(&args.render.scene, &options, args.render.quiet, &mut registry)?;
-    let job = job(&args.render.job, Some(&args.render.view), &compiled.loaded, false)?;
+    let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
+    let view = ViewArgs { crop: args.crop, show: vec!["color".into()], zoom: 1 };
+    let job = job(&args.job, Some(&view), &compiled.loaded, false)?;
     let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
         true => picture(args, &compiled, &job)?,
         false => (None, None),
@@ -114,10 +125,10 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         },
         Explained::Ray(_) => 0,
     };
-    let transfer = args.render.display.transfer();
+    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     if let (Some(destination), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(&args.render.scene, &compiled, &job, &subject, sample, picture, transfer)?;
-        output::save(&[(destination, page.into_bytes())], args.render.quiet)?;
+        let page = page::page(&args.scene, &compiled, &job, &subject, sample, picture, transfer)?;
+        output::save(&[(destination, page.into_bytes())], args.quiet)?;
         return Ok(());
     }
     if args.json {
@@ -144,9 +155,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
 fn picture(args: &ExplainArgs, compiled: &CompiledInput, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
     let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
-    let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
+    let control = Arc::new(Control { threads: args.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&compiled.world, &job, &control);
-    let rendered = progress::watch(&control, args.render.quiet, render).map_err(from_render_error)?;
+    let rendered = progress::watch(&control, args.quiet, render).map_err(from_render_error)?;
     let mut images = rendered.layers.into_iter().map(|layer| Arc::unwrap_or_clone(layer.image));
     Ok((images.next(), images.next()))
 }

@@ -85,7 +85,26 @@ const MIN_HIDDEN: usize = 8;
 /// Sorts the options of all commands by topic. If `all` is false, `--help` shows only the common
 /// options.
 pub fn arrange(program: Command, all: bool) -> Command {
-    program.mut_subcommands(|command| arrange_command(command, all))
+    reflowed(program).mut_subcommands(|command| arrange_command(reflowed(command), all))
+}
+
+/// Joins the lines of each paragraph at the end of a command's help, because the lines are wrapped
+/// again for the terminal. Indented lines, such as examples, and the lines before them stay as they
+/// are.
+fn reflowed(command: Command) -> Command {
+    let Some(text) = command.get_after_help().map(ToString::to_string) else { return command };
+    let mut joined = String::new();
+    let mut lines = text.lines().peekable();
+    while let Some(line) = lines.next() {
+        let is_plain = |line: &str| !line.is_empty() && !line.starts_with(' ');
+        joined += line;
+        joined += match lines.peek() {
+            Some(next) if is_plain(line) && is_plain(next) => " ",
+            Some(_) => "\n",
+            None => "",
+        };
+    }
+    command.after_help(joined)
 }
 
 fn arrange_command(command: Command, all: bool) -> Command {
@@ -108,18 +127,20 @@ fn arrange_command(command: Command, all: bool) -> Command {
         true => "Print all options, by topic".to_string(),
         false => format!("Print all options, by topic ({rare} more)"),
     };
-    command.arg(Arg::new("help-all").long("help-all").action(ArgAction::HelpLong).help(summary))
+    let option = Arg::new("help-all").long("help-all").action(ArgAction::HelpLong).help(summary);
+    command.arg(option.help_heading(None::<&str>))
 }
 
-/// Returns the topic of an option that commands share, and the option's place in the help.
+/// Returns the topic of an option that commands share, and the option's place in the help. An
+/// option is known by its id, because a command can have an option of its own with the same name.
 fn topic(arg: &Arg) -> Option<(&'static str, usize)> {
-    let name = arg.get_long()?;
+    let name = arg.get_long().and(Some(arg.get_id().as_str().replace('_', "-")))?;
     let place = |names: &[&str]| names.iter().position(|known| *known == name);
     TOPICS.iter().find_map(|(heading, names)| Some((*heading, place(names)?)))
 }
 
 fn is_common(arg: &Arg) -> bool {
-    arg.get_long().is_some_and(|name| COMMON.contains(&name))
+    COMMON.contains(&arg.get_id().as_str().replace('_', "-").as_str())
 }
 
 #[cfg(test)]
@@ -145,6 +166,33 @@ mod tests {
         assert!(COMMON.iter().all(|name| listed.contains(name)));
         let own: Vec<&&str> = options.difference(&listed).collect();
         assert_eq!(own, [&"hash", &"help-all", &"output", &"pixel", &"quiet", &"sample", &"stats", &"watch"]);
+    }
+
+    #[test]
+    fn own_options_come_first_and_closing_texts_are_wrapped_once() {
+        let help = |name: &str| {
+            let program = arrange(Cli::command(), false);
+            program.find_subcommand(name).unwrap().clone().render_long_help().to_string()
+        };
+        let measure = help("measure");
+        let (own, shared) = (measure.find("Options:").unwrap(), measure.find("\nModel:").unwrap());
+        for name in ["--at <X,Y,Z>", "--grid <CORNER", "--points", "--normal", "--plan", "--help-all"] {
+            assert!(
+                (own..shared).contains(&measure.find(name).unwrap_or_else(|| panic!("{name}: {measure}"))),
+                "{name}"
+            );
+        }
+        for name in ["--eye", "--view", "--fov", "--camera"] {
+            assert!(!measure.contains(name), "{name} does not change what is measured");
+        }
+        let explain = help("explain");
+        for name in ["--output", "--hash", "--stats", "--watch", "--exposure", "--resume"] {
+            assert!(!explain.contains(name), "{name}");
+        }
+        for name in ["info", "measure", "compare", "lesson"] {
+            assert!(!help(name).contains("\nModels:"), "{name}");
+        }
+        assert!(help("render").contains("OBJ, STL. A model without a camera"));
     }
 
     #[test]

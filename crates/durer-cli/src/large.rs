@@ -37,7 +37,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         (work.preview.is_some(), "--preview"),
         (work.time.is_some(), "--time-limit"),
         (args.denoise.is_some(), "--denoise"),
-        (args.stats, "--stats"),
+        (args.stats.is_some(), "--stats"),
     ] {
         if given {
             return refuse(&format!("{option} needs the full picture in memory"));

@@ -9,7 +9,7 @@ use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::job::{job, warn};
 use crate::open::{load_options, open};
-use crate::options::{JobArgs, SceneArgs, accel, aspect};
+use crate::options::{GivenOptions, JobArgs, SceneArgs, accel, aspect};
 use crate::output::with_suffix;
 use crate::progress;
 use crate::terminal::print_line;
@@ -33,7 +33,9 @@ use step_files::{Lesson, PAGE, TEXT};
   durer lesson scenes/plates.txt -o lesson/ --samples 32
   durer lesson monday.md
 
-If SCENE is a Markdown file, the lesson that it describes is shown in the browser; docs/live.md explains how to write one.
+If SCENE is a Markdown file, the lesson that it describes is shown in the browser and not written to files, so
+no other option applies to it; docs/live.md explains how to write one.
+
 The lesson of a scene is written to FOLDER as a self-contained page, index.html, and as lesson.md with separate picture files. In an
 existing folder, files of an earlier lesson are replaced and other files are kept.
 Pass the same options as to `durer render`: with the whitted integrator, the last step shows the same picture. Without
@@ -41,6 +43,8 @@ Pass the same options as to `durer render`: with the whitted integrator, the las
 With --integrator path (the default for some scenes) or photons, the lesson continues with soft shadows, bounces, the two
 ways to sample lights, caustics and spectra, if they occur in the scene.")]
 pub struct LessonArgs {
+    #[command(flatten)]
+    pub given: GivenOptions,
     /// Scene file, or a lesson in Markdown
     pub scene: PathBuf,
     /// Output folder [default: the scene's name followed by -lesson, in the current folder]
@@ -66,6 +70,12 @@ const SIDE: u32 = 256;
 /// Runs `durer lesson`.
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     if args.scene.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
+        if let Some(name) = args.given.find(|name| name != "scene") {
+            return Err(invalid_input(format!(
+                "a lesson in Markdown is shown in the browser and not written to files, so --{name} does not apply to \
+                 it; its figures give their own options"
+            )));
+        }
         return crate::live::lesson(&args.scene);
     }
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());

@@ -2,7 +2,7 @@
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Command, Error};
+use clap::{Arg, Command, Error};
 use std::ffi::OsString;
 
 /// Options of other programs: their names, the option that a command must have for the hint to
@@ -29,6 +29,13 @@ const HINTS: &[(&[&str], &str, &str)] = &[
     (&["--gamma"], "transfer", "use `--transfer srgb`, `linear` or `course` for the transfer curve"),
     (&["--verbose", "--debug", "--log"], "stats", "use `--stats` for timings and ray counts"),
     (&["--verbose", "--debug", "--log"], "json", "use `--json` for the full output"),
+    (
+        &["--json"],
+        "stats",
+        "use `--stats=FILE.json` for the statistics of a render; `durer info --json` describes the scene",
+    ),
+    (&["--transparent", "--alpha"], "show", "pictures have no transparency: the camera sees the scene's `Background`"),
+    (&["--ugr"], "points", "UGR is not computed; `durer render --show luminance` writes the luminances it is based on"),
     (&["--jobs", "--cores"], "threads", "use `--threads 4`"),
 ];
 
@@ -46,12 +53,26 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
     let command = words.get(1).and_then(|name| program.find_subcommand(name)).unwrap_or(program);
     let has = |option: &str| command.get_arguments().any(|argument| argument.get_long() == Some(option));
     let known = HINTS.iter().find(|(names, option, _)| names.contains(&given.as_str()) && has(option));
-    let Some((_, _, help)) = known else { return error };
+    let is_other = |render: &&Command| ![render.get_name(), program.get_name()].contains(&command.get_name());
+    let render = program.find_subcommand("render").filter(is_other);
+    let is_given = |argument: &Arg| match given.strip_prefix("--") {
+        Some(name) => argument.get_long() == Some(name),
+        None => {
+            given.strip_prefix('-').is_some_and(|name| argument.get_short().map(String::from).as_deref() == Some(name))
+        }
+    };
+    let help = match known {
+        Some((_, _, help)) => help.to_string(),
+        None if render.is_some_and(|render| render.get_arguments().any(is_given)) => {
+            format!("`{given}` is an option of `durer render`, which has no meaning for `durer {}`", command.get_name())
+        }
+        None => return error,
+    };
     let course = if whole.is_some() { " (`durer course` takes the course's options)" } else { "" };
     for kind in [ContextKind::SuggestedArg, ContextKind::SuggestedValue, ContextKind::Suggested, ContextKind::Usage] {
         error.remove(kind);
     }
-    error.insert(ContextKind::InvalidArg, ContextValue::String(given));
+    error.insert(ContextKind::InvalidArg, ContextValue::String(given.clone()));
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(format!("{help}{course}"))]));
     error
 }

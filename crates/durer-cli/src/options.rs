@@ -1,5 +1,6 @@
 //! Options shared by several commands.
 
+mod given;
 mod integrator;
 mod job;
 
@@ -16,9 +17,10 @@ use durer::math::Vec3;
 use durer::options::memory::Memory;
 use durer::options::{compat, crop, doc, vector};
 use durer::render::Shard;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub use given::GivenOptions;
 pub use integrator::IntegratorArgs;
 pub use job::{JobArgs, accel, aspect};
 
@@ -98,12 +100,20 @@ pub struct RenderArgs {
     /// Print the film's hash as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Print timings, ray counts and the fraction of time spent in ray traversal to standard error
-    #[arg(long)]
-    pub stats: bool,
+    /// Print timings, ray counts and the fraction of time spent in ray traversal to standard error,
+    /// or write them to FILE as JSON
+    #[arg(long, value_name = "FILE.json", num_args = 0..=1, require_equals = true, default_missing_value = "-")]
+    pub stats: Option<PathBuf>,
     /// Print only errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl RenderArgs {
+    /// Returns the file for the statistics, unless they are printed.
+    pub fn stats_file(&self) -> Option<&Path> {
+        self.stats.as_deref().filter(|path| *path != Path::new("-"))
+    }
 }
 
 /// Options of the pictures to write
@@ -138,7 +148,7 @@ pub struct WorkArgs {
     pub threads: Option<u16>,
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096), help = doc("tile"))]
     pub tile: Option<u32>,
-    #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration, help = doc("time-limit"))]
+    #[arg(id = "time-limit", long = "time-limit", alias = "time", value_name = "TIME", value_parser = duration, help = doc("time-limit"))]
     pub time: Option<Duration>,
     /// Continue saved work; start from the beginning if there is none
     #[arg(long)]
@@ -150,7 +160,7 @@ pub struct WorkArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     pub checkpoint: Option<PathBuf>,
     /// Time between saves of unfinished work
-    #[arg(long, default_value = "30s", value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long, default_value = "30s", value_name = "TIME", value_parser = duration)]
     pub checkpoint_every: Duration,
     /// Do not save unfinished work
     #[arg(long, conflicts_with_all = ["checkpoint", "resume", "shard"])]
@@ -162,6 +172,11 @@ pub struct WorkArgs {
     pub shard: Option<Shard>,
     #[arg(long, value_name = "WHAT", default_value = "tiles", hide_default_value = true, value_parser = ["tiles", "samples"], requires = "shard", help = doc("shard-by"))]
     pub shard_by: String,
+}
+
+/// Parses a time with its unit.
+fn duration(text: &str) -> Result<Duration, String> {
+    humantime::parse_duration(text).map_err(|_| "expected a time with its unit, for example 30s, 10m or 1h30m".into())
 }
 
 /// Names of pictures that show how the scene is sampled rather than the scene itself.

@@ -54,15 +54,25 @@ pub struct RenderCommand {
 
 /// Runs `durer render`.
 pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
+    if command.render.scene.is_dir() {
+        let message = format!("`{}` is not a regular file but a folder", command.render.scene.display());
+        return Err(invalid_input(message));
+    }
     let (args, scene_defaults) = (&command.render, &command.render.reading.scene_defaults);
     let view = scene_defaults.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
     let names = [&args.scene.to_string_lossy(), scene_defaults.camera.as_deref().unwrap_or_default(), &view];
     match (command.frames.resolve(&args.scene, &names)?, args.watch) {
         (Some((frames, moves)), _) => {
             let work = &args.work;
-            if work.checkpoint.is_some() || work.preview.is_some() || args.watch || command.pixel.is_some() {
+            if work.checkpoint.is_some()
+                || work.preview.is_some()
+                || args.watch
+                || command.pixel.is_some()
+                || args.stats_file().is_some()
+            {
                 return Err(invalid_input(
-                    "--checkpoint, --preview, --watch and --pixel apply to one picture, not to an animation",
+                    "--checkpoint, --preview, --watch, --stats=FILE and --pixel apply to one picture, not to an \
+                     animation",
                 ));
             }
             frames::run(&mut command.render, frames, moves)

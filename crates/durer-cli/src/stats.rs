@@ -1,13 +1,24 @@
-//! Implements `--stats`, which prints the times and ray counts of a render.
+//! Implements `--stats`, which prints the times and ray counts of a render or writes them as JSON.
 
-use crate::failure::{Failure, from_render_error};
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::terminal::print_error_line;
+use durer::image::Destination;
 use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Number of samples that are rendered again for the measurement.
 const SAMPLES: u64 = 4096;
+
+/// Returns the file for the statistics. Fails if its name does not end in .json.
+pub fn target(path: &Path, registry: &mut FileRegistry) -> Result<Destination, Failure> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        return Err(invalid_input(format!("--stats writes JSON: `{}` must end in .json", path.display())));
+    }
+    registry.register_output("--stats", path)
+}
 
 /// Stopwatch for the stages of a render, such as reading and rendering.
 pub struct StageTimer {
@@ -27,6 +38,37 @@ impl StageTimer {
         self.last = Instant::now();
     }
 
+    /// Returns the time of the stage "rendering" in seconds.
+    fn rendering(&self) -> f64 {
+        self.done.iter().find(|(name, _)| *name == "rendering").map_or(0.0, |(_, time)| time.as_secs_f64())
+    }
+
+    /// Returns the times of the stages and the ray counts of a finished part as JSON. Times are in
+    /// seconds.
+    pub fn json(&self, world: &World, part: &PartialRender) -> Result<Vec<u8>, Failure> {
+        let statistics = part.statistics();
+        let seconds: serde_json::Map<_, _> =
+            self.done.iter().map(|(name, time)| (name.to_string(), time.as_secs_f64().into())).collect();
+        let measured = profile(world, part.job(), SAMPLES).map_err(from_render_error)?.map(|profile| {
+            let rays: serde_json::Map<_, _> =
+                profile.rays.iter().map(|(name, count)| (name.to_string(), (*count).into())).collect();
+            serde_json::json!({
+                "samples": profile.samples,
+                "rays": rays,
+                "seconds": profile.time.as_secs_f64(),
+                "traversal_seconds": profile.intersection_time.as_secs_f64(),
+            })
+        });
+        let value = serde_json::json!({
+            "seconds": seconds,
+            "rays": statistics.rays,
+            "samples": statistics.samples,
+            "rays_per_second": statistics.rays as f64 / self.rendering().max(1e-9),
+            "one_thread": measured,
+        });
+        Ok((serde_json::to_string_pretty(&value)? + "\n").into_bytes())
+    }
+
     /// Prints the times of the stages and the ray counts of a finished part.
     pub fn report(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
         print_error_line("time");
@@ -34,8 +76,7 @@ impl StageTimer {
             print_error_line(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));
         }
         let statistics = part.statistics();
-        let rendering =
-            self.done.iter().find(|(name, _)| *name == "rendering").map_or(0.0, |(_, time)| time.as_secs_f64());
+        let rendering = self.rendering();
         print_error_line("rays");
         print_error_line(&format!("  {:>12}  in total, for {} samples", statistics.rays, statistics.samples));
         print_error_line(&format!(

@@ -73,13 +73,14 @@ fn text_names_objects_by_file_position() {
         assert!(result.out.contains(wanted), "{wanted}\n{}", result.out);
     }
     assert!(!result.out.contains('\x1b'), "no colours into a pipe");
-    // The numbers of a ray are separated by spaces, not by commas.
-    let result = folder.expect_exit(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
+    let result = folder.expect_exit(2, "explain scene.txt --quiet --ray 0;3;0;0;-1;0");
     assert!(result.err.contains("--ray"), "{}", result.err);
     for ray in [
         &["0 3 0 0 -1 0"][..],
         &["0", "3", "0", "0", "-1", "0"],
         &["-0 3 0  0 -1 0"],
+        &["-0,3,0,0,-1,0"],
+        &["0,3,0, 0,-1,0"],
         &["-0", "3", "0", "0", "-1", "0"],
     ] {
         let output = folder.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
@@ -152,7 +153,7 @@ fn invalid_options_are_refused() {
         ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
         ("--pixel 4;3", "for example 200,150"),
         ("--pixel 4,3 --sample 16", "no sample 16: the pixel's samples are numbered from 0 to 15"),
-        ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
+        ("--pixel 4,3 --time-limit 1s", "`--time-limit` is an option of `durer render`"),
         ("--pixel 4,3 --brightest", "cannot be used with"),
     ] {
         let output = folder.expect_exit(2, &format!("explain scene.txt {SMALL} {question}"));

@@ -41,6 +41,15 @@ fn lesson_folder_has_page_text_and_pictures() {
 }
 
 #[test]
+fn lessons_in_markdown_refuse_options() {
+    let folder = TestFolder::new();
+    folder.write("monday.md", "# Monday\n");
+    folder.expect_failure(2, "lesson monday.md -o out.html", &["shown in the browser", "--output"]);
+    folder.expect_failure(2, "lesson monday.md --samples 4", &["--samples"]);
+    assert!(!folder.path("out.html").exists());
+}
+
+#[test]
 fn only_files_of_an_earlier_lesson_are_replaced() {
     let folder = TestFolder::new();
     std::fs::create_dir(folder.path("out")).unwrap();
