@@ -36,7 +36,7 @@ pub struct InfoArgs {
     #[arg(long)]
     pub json: bool,
     /// Draw the intensities of a luminaire in two planes as an SVG file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg")]
     pub polar: Option<PathBuf>,
 }
 

@@ -1,5 +1,6 @@
 //! Implements `durer measure`, which computes illuminance and irradiance at points.
 
+mod enclosed;
 mod grid;
 mod plan;
 mod point_list;
@@ -8,11 +9,12 @@ mod printed;
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
-use crate::options::{IntegratorArgs, SceneArgs};
+use crate::options::{GivenOptions, IntegratorArgs, SceneArgs};
 use crate::progress::show_progress;
 use crate::report;
+use crate::svg::svg_target;
 use crate::terminal::print_error_line;
-use clap::Args;
+use clap::{Arg, Args};
 use durer::diag::Diagnostic;
 use durer::image::{Destination, save_all};
 use durer::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSettings};
@@ -30,7 +32,9 @@ use std::path::PathBuf;
 
 /// Measure illuminance and irradiance at points in a scene, as CSV with standard errors
 #[derive(Args)]
-#[command(mut_arg("at", |moment| moment.long("moment")), after_help = "Examples:
+#[command(
+    mut_args(of_measure),
+    after_help = "Examples:
   durer measure room.txt --at 0,0.8,0
   durer measure room.txt --at 0,0.8,0 --at 1,0.8,0 --normal 0,1,0 --samples 16384
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
@@ -42,12 +46,23 @@ A grid is given by a corner, two edges that start at the corner, and the number 
 the centres of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
 product of its second and first edges. For each grid, the minimum, average, maximum, U0 (minimum / average) and U1
 (minimum / maximum) are printed to standard error, and with --json to standard output.
+
+Points inside a closed object receive no light. They stay in the list with an illuminance of 0, but they are left out of
+these figures and of the plan, and their number is printed. An object that contains a point with light or the camera
+counts as a room, not as an object around the point.
+
 A line of a list of points contains x,y,z or x,y,z,nx,ny,nz; a first line with names is ignored.
-Illuminance is in lux if the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and in Radiance scenes. Irradiance has
-one value per colour channel. Light that arrives from behind the normal is ignored. The standard errors assume independent
-samples, so the actual errors are smaller. Lights that only BSDF sampling can find, for example in mirrors, increase the
-standard errors.")]
+
+Units: illuminance is in lux if the scene's light has units (`emissionLuminance` in cd/m^2, `candela`, `lumens`, `lux`,
+photometric files, a sky), and in Radiance scenes. Irradiance has one value per colour channel: in W/m^2 in Radiance
+scenes, else in the unit of the illuminance. Light that arrives from behind the normal is ignored.
+
+The standard errors assume independent samples, so the actual errors are smaller. Lights that only BSDF sampling can find,
+for example in mirrors, increase the standard errors."
+)]
 pub struct MeasureArgs {
+    #[command(flatten)]
+    pub given: GivenOptions,
     /// Scene or model file
     pub scene: PathBuf,
     /// Point to measure; can be given several times
@@ -60,10 +75,10 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
     /// Grid of points: a corner, two edges, and the number of points along each edge
-    #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid::parse, allow_hyphen_values = true)]
+    #[arg(id = "grids", long = "grid", value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid::parse, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
-    /// Draw the grid as a plan in false colours with isolux lines, as an SVG file
-    #[arg(long, value_name = "FILE", requires = "grid")]
+    /// Draw the grid as a plan in false colours with isolux lines in lux, as an SVG file
+    #[arg(long, value_name = "FILE.svg", requires = "grids")]
     pub plan: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
@@ -115,8 +130,24 @@ fn in_the_air(world: &World, sensors: &[Sensor]) -> Option<Vec3> {
     sensors.iter().find(|sensor| !lies_on_a_surface(sensor)).map(|sensor| sensor.point)
 }
 
+/// Options that place the camera, which does not change what is measured.
+const CAMERA: &[&str] = &["view", "eye", "target", "fov", "camera", "view-file", "fit", "turned"];
+
+/// Adapts the shared options to this command: hides those of the camera, and renames the time of an
+/// animation, because `--at` is a point here.
+fn of_measure(arg: Arg) -> Arg {
+    match arg.get_id().as_str() {
+        "at" => arg.long("moment"),
+        id if CAMERA.contains(&id.replace('_', "-").as_str()) => arg.hide(true),
+        _ => arg,
+    }
+}
+
 /// Runs `durer measure`.
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
+    if let Some(name) = args.given.find(|name| CAMERA.contains(&name)) {
+        return Err(invalid_input(format!("--{name} places the camera, which does not change what is measured")));
+    }
     let mut options = load_options(&args.reading);
     // Measure only the light of the scene itself.
     options.scene_defaults.own_light = options.scene_defaults.lighting.is_none();
@@ -162,7 +193,10 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let measured = threads::install(args.threads.map(usize::from), || {
         show_progress("measuring", |progress| measure(&path, &sensors, &options, progress))
     });
-    let groups = Groups { sensors: &sensors, points: &measured.points, alone, grids: &args.grid };
+    let inside = enclosed::find(&compiled.world, &sensors, &measured.points);
+    let unit = if compiled.world.lumens().is_some() { "W/m^2" } else { "lux" };
+    let groups =
+        Groups { sensors: &sensors, points: &measured.points, inside: &inside, unit, alone, grids: &args.grid };
     match args.json {
         true => groups.print_json()?,
         false => groups.print_rows(),
@@ -171,8 +205,17 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         groups.print_summaries();
     }
     if let (Some(plan), Some((grid, points))) = (plan, groups.grids().next()) {
-        save_all(&[(&plan, plan::draw(grid, points, up).into_bytes())])?;
+        save_all(&[(&plan, plan::draw(grid, &points, up).into_bytes())])?;
         print_written_to_error(&plan, args.quiet);
+    }
+    let enclosed = inside.iter().filter(|inside| **inside).count();
+    if enclosed > 0 && !args.quiet {
+        let (of, are) = (report::counted(sensors.len(), "point"), if enclosed == 1 { "is" } else { "are" });
+        let first = sensors.iter().zip(&inside).find(|(_, inside)| **inside);
+        let first = first.map_or(String::new(), |(sensor, _)| printed::vector(sensor.point));
+        let message =
+            format!("{enclosed} of {of} {are} inside an object, where no light arrives; the first is {first}");
+        report::note(&Diagnostic::warning(message).code("INSIDE"));
     }
     if let Some(error) = args.error
         && let missed = measured.points.iter().filter(|point| point.error > error * point.illuminance).count()
@@ -198,10 +241,7 @@ fn plan_target(args: &MeasureArgs, registry: &mut FileRegistry) -> Result<Option
     if args.grid.len() != 1 {
         return Err(invalid_input("--plan shows one grid: give --grid once"));
     }
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        return Err(invalid_input(format!("--plan writes SVG: `{}` must end in .svg", path.display())));
-    }
-    Ok(Some(registry.register_output("--plan", path)?))
+    Ok(Some(svg_target("--plan", path, registry)?))
 }
 
 /// Prints the name of a file that was written to standard error, because the measured values are on

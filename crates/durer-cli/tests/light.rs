@@ -68,6 +68,9 @@ fn grids_have_figures_lists_plans_and_error_targets() {
     assert!(output.err.contains("wrote desk.svg"));
     let plan = std::fs::read_to_string(folder.path("desk.svg")).unwrap();
     assert!(plan.starts_with("<svg") && plan.matches("<rect").count() > 81 && plan.contains("stroke=\"#fff\""));
+    for text in [">lux</text>", ">x</text>", ">z</text>", ">-2</text>", ">1</text>"] {
+        assert!(plan.contains(text), "{text} is not in {plan}");
+    }
     let json = folder.expect_exit(0, &format!("{grid} --json --at 0,0,0"));
     let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert_eq!(json["points"].as_array().unwrap().len(), 82);
@@ -97,6 +100,58 @@ fn grids_have_figures_lists_plans_and_error_targets() {
         }
     }
     folder.expect_failure(2, "measure lit.txt --at 0,0,0 --error 0", &["a share such as 1% or 0.01"]);
+}
+
+/// Grid points inside the ball are not part of the figures. In a closed room with a light, all
+/// points are inside the walls but receive light.
+#[test]
+fn points_inside_objects_are_left_out_of_the_figures() {
+    let folder = lit();
+    let measure = "measure lit.txt --samples 64 --grid 0,0.5,0:3,0,0:0,0,0.2:4x1";
+    // The cells are 0.75 wide, and the ball with the radius 0.5 is around (1, 0.5, 0).
+    let output = folder.expect_exit(0, &format!("{measure} --plan p.svg"));
+    assert!(output.err.contains("3 of 4 points; 1 inside an object"), "{}", output.err);
+    assert!(output.err.contains("1 of 4 points is inside an object"), "{}", output.err);
+    let plan = std::fs::read_to_string(folder.path("p.svg")).unwrap();
+    assert_eq!(plan.matches("fill=\"#bbb\"").count(), 1, "{plan}");
+    let json = folder.expect_exit(0, &format!("{measure} --json")).out;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let grid = &json["grids"][0];
+    assert_eq!((&grid["inside"], &grid["values"][1]), (&1.into(), &serde_json::Value::Null), "{json}");
+    assert!(grid["minimum"].as_f64().unwrap() > 1.0 && json["points"][1]["inside"] == true, "{json}");
+    assert_eq!(json["units"]["irradiance"], "lux");
+    folder.write(
+        "room.txt",
+        "PerspectiveCamera { center 0 1 9 direction 0 0 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
+Lights { PointLight { position 0 2 0 color 1 1 1 candela 100 } } Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } }
+Group { MaterialIndex 0 Box { min -2 0 -2 max 2 3 2 } }",
+    );
+    let output = folder.expect_exit(0, "measure room.txt --samples 16 --grid -1,1,-1:2,0,0:0,0,2:2x2");
+    assert!(output.err.contains("minimum") && !output.err.contains("inside"), "{}", output.err);
+    folder.expect_failure(2, "measure room.txt --at 0,1,0 --eye 0,0,9", &["--eye", "does not change what is measured"]);
+    folder.expect_failure(2, "measure room.txt --at 0,1,0 --size 9x9", &["option of `durer render`"]);
+}
+
+/// Follows the recipe for daylight factors in docs/light.md.
+#[test]
+fn daylight_factor_of_the_manual() {
+    let page = include_str!("../../../docs/light.md");
+    let recipe = page.split("### Daylight factor").nth(1).unwrap();
+    let scene: String = recipe
+        .lines()
+        .skip_while(|line| !line.starts_with("    "))
+        .take_while(|line| line.starts_with("    "))
+        .map(|line| format!("{}\n", &line[4..]))
+        .collect();
+    let command = recipe.split("`durer ").nth(1).unwrap().split('`').next().unwrap();
+    let folder = TestFolder::new();
+    folder.write("room.txt", scene);
+    let output = folder.expect_exit(0, command);
+    let lux: Vec<f64> = output.out.lines().skip(1).map(|row| row.split(',').nth(6).unwrap().parse().unwrap()).collect();
+    let [inside, outside] = lux[..] else { panic!("{}", output.out) };
+    let expected = 7.0 / 9.0 * std::f64::consts::PI * 10000.0;
+    assert!((outside / expected - 1.0).abs() < 0.04, "{outside}, not {expected}");
+    assert!((100.0 * inside / outside - 3.6).abs() < 0.2, "{inside} {outside}");
 }
 
 #[test]

@@ -10,6 +10,10 @@ use durer::measure::{Measured, Sensor, Uniformity};
 pub struct Groups<'a> {
     pub sensors: &'a [Sensor],
     pub points: &'a [Measured],
+    /// For each point, true if it is inside an object and therefore not part of any figures.
+    pub inside: &'a [bool],
+    /// Unit of the irradiance.
+    pub unit: &'static str,
     /// Number of single points.
     pub alone: usize,
     pub grids: &'a [Grid],
@@ -21,13 +25,14 @@ pub fn vector(v: Vec3) -> String {
 }
 
 impl<'a> Groups<'a> {
-    /// Iterates over the grids with their values.
-    pub fn grids(&self) -> impl Iterator<Item = (&'a Grid, &'a [Measured])> {
-        let mut rest = &self.points[self.alone..];
+    /// Iterates over the grids with their values. Points inside objects have no value.
+    pub fn grids(&self) -> impl Iterator<Item = (&'a Grid, Vec<Option<Measured>>)> {
+        let mut first = self.alone;
         self.grids.iter().map(move |grid| {
-            let (own, others) = rest.split_at(grid.len());
-            rest = others;
-            (grid, own)
+            let range = first..first + grid.len();
+            first = range.end;
+            let points = self.points[range.clone()].iter().zip(&self.inside[range]);
+            (grid, points.map(|(point, inside)| (!inside).then_some(*point)).collect())
         })
     }
 
@@ -44,20 +49,28 @@ impl<'a> Groups<'a> {
     /// Prints the figures of each grid to standard error.
     pub fn print_summaries(&self) {
         for (number, (_, points)) in self.grids().enumerate() {
-            let Some(figures) = Uniformity::of(points) else { continue };
+            let outside = outside(&points);
+            let Some(figures) = Uniformity::of(&outside) else { continue };
             let Uniformity { min, average, max } = figures;
+            let left_out = match points.len() - outside.len() {
+                0 => String::new(),
+                count => format!("; {} of {} points; {count} inside an object", outside.len(), points.len()),
+            };
             print_error_line(&format!(
-                "note: grid {}: average {average:.4}, minimum {min:.4}, maximum {max:.4}, U0 {:.3}, U1 {:.3}",
+                "note: grid {}: average {average:.4}, minimum {min:.4}, maximum {max:.4} lux, U0 {:.3}, U1 {:.3}{left_out}",
                 number + 1,
                 figures.u0(),
                 figures.u1()
             ));
         }
+        if self.unit != "lux" {
+            print_error_line(&format!("note: illuminance is in lux, irradiance in {}", self.unit));
+        }
     }
 
     /// Prints all points, and the figures of each grid.
     pub fn print_json(&self) -> Result<(), Failure> {
-        let point = |(sensor, measured): (&Sensor, &Measured)| {
+        let point = |((sensor, measured), inside): ((&Sensor, &Measured), &bool)| {
             serde_json::json!({
                 "point": sensor.point.to_array(),
                 "normal": sensor.normal.to_array(),
@@ -65,10 +78,12 @@ impl<'a> Groups<'a> {
                 "illuminance_error": measured.error,
                 "irradiance": measured.irradiance,
                 "samples": measured.samples,
+                "inside": inside,
             })
         };
-        let grid = |(grid, points): (&Grid, &[Measured])| {
-            let figures = Uniformity::of(points)?;
+        let grid = |(grid, points): (&Grid, Vec<Option<Measured>>)| {
+            let outside = outside(&points);
+            let figures = Uniformity::of(&outside)?;
             Some(serde_json::json!({
                 "counts": grid.counts,
                 "average": figures.average,
@@ -76,14 +91,21 @@ impl<'a> Groups<'a> {
                 "maximum": figures.max,
                 "u0": figures.u0(),
                 "u1": figures.u1(),
-                "values": points.iter().map(|point| point.illuminance).collect::<Vec<_>>(),
+                "inside": points.len() - outside.len(),
+                "values": points.iter().map(|point| point.map(|point| point.illuminance)).collect::<Vec<_>>(),
             }))
         };
         let value = serde_json::json!({
-            "points": self.sensors.iter().zip(self.points).map(point).collect::<Vec<_>>(),
+            "units": { "illuminance": "lux", "irradiance": self.unit },
+            "points": self.sensors.iter().zip(self.points).zip(self.inside).map(point).collect::<Vec<_>>(),
             "grids": self.grids().filter_map(grid).collect::<Vec<_>>(),
         });
         print_line(&serde_json::to_string_pretty(&value)?);
         Ok(())
     }
+}
+
+/// Returns the values of the points that are not inside an object.
+pub fn outside(points: &[Option<Measured>]) -> Vec<Measured> {
+    points.iter().copied().flatten().collect()
 }
