@@ -1,10 +1,13 @@
 //! Implements `durer words`, which prints the language reference.
 
+mod topics;
+
 use crate::failure::{Failure, invalid_input};
 use crate::terminal::print_line;
 use durer::diag::did_you_mean;
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};
+use topics::{SYNONYMS, example, topic};
 
 /// Arguments of `durer words`.
 #[derive(clap::Args)]
@@ -33,10 +36,21 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
         all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
     if begun.is_empty() && in_blocks.is_empty() {
         let found = mentions(&all, word);
+        if let Some(usage) = topic(word) {
+            print_line(&format!("`{word}` is not a word of the language: {usage}."));
+        }
         if !found.is_empty() {
-            print_line(&format!("`{word}` is not a word of the language. These words are about it:"));
+            match topic(word) {
+                Some(_) => print_line("\nThese words are about it:"),
+                None => print_line(&format!("`{word}` is not a word of the language. These words are about it:")),
+            }
             found.iter().for_each(|row| print_line(row));
+            if let Some(example) = example(word) {
+                print_line(&format!("\nExample:\n  {example}"));
+            }
             print_line("\n`durer words WORD` describes a word and its fields.");
+        }
+        if !found.is_empty() || topic(word).is_some() {
             return Ok(());
         }
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
@@ -59,34 +73,6 @@ fn dialect_by_name(name: &str) -> Result<Dialect, Failure> {
     Dialect::from_name(name)
         .ok_or_else(|| invalid_input(format!("`{name}` is not a dialect; known dialects: {}", known())))
 }
-
-/// Synonyms of terms that users look up and that the manual does not use.
-const SYNONYMS: &[(&str, &[&str])] = &[
-    ("glass", &["refract", "transmission", "transparent"]),
-    ("refraction", &["refract"]),
-    ("lens", &["aperture", "focus"]),
-    ("dof", &["focus", "aperture"]),
-    ("depth of field", &["focus", "aperture"]),
-    ("ies", &["photometric", "ies"]),
-    ("area light", &["emission", "emits"]),
-    ("lamp", &["light"]),
-    ("emission", &["emission", "emits"]),
-    ("glow", &["emission", "emits"]),
-    ("mirror", &["reflect"]),
-    ("metal", &["metal"]),
-    ("shiny", &["exponent", "roughness"]),
-    ("hdri", &["environment"]),
-    ("skybox", &["environment"]),
-    ("sun", &["sun"]),
-    ("fog", &["fog", "medium", "scatter"]),
-    ("smoke", &["fog", "medium", "scatter"]),
-    ("csg", &["difference", "intersection", "union"]),
-    ("boolean", &["difference", "intersection", "union"]),
-    ("model", &["mesh"]),
-    ("transparency", &["transparent", "opacity"]),
-    ("bump", &["bump", "normal map"]),
-    ("size", &["size", "scale"]),
-];
 
 /// Returns a row for each word whose documentation mentions a term or one of its synonyms. Words
 /// whose name contains the term come first.
@@ -131,7 +117,11 @@ fn list(all: &[Entry], dialect: Option<Dialect>) {
             continue;
         }
         print_line(chapter.title());
-        for entry in of_chapter {
+        for (i, entry) in of_chapter.iter().enumerate() {
+            // A word can begin different blocks, which `durer words WORD` describes together.
+            if of_chapter[..i].iter().any(|earlier| earlier.name() == entry.name()) {
+                continue;
+            }
             let own = entry.keywords.iter().find(|keyword| dialect.is_none_or(|dialect| dialect.is_in(keyword.1)));
             let first = first_sentence(&entry.doc);
             print_line(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));

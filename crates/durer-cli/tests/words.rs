@@ -126,6 +126,22 @@ fn terms_lead_to_words() {
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(output.status.success() && text.contains(word), "{term}: {text}");
     }
+    for (term, part) in [
+        ("supersampling", "--samples 64"),
+        ("antialiasing", "--samples 64"),
+        ("daylight factor", "docs/light.md"),
+        ("transparent background", "`Background`"),
+        ("UGR", "--show luminance"),
+        ("statistics", "--stats=FILE.json"),
+        ("glass", "PrincipledMaterial { preset glass }"),
+        ("mirror", "PrincipledMaterial { preset silver"),
+    ] {
+        let output = folder.command("words").arg(term).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && text.contains(part), "{term}: {text}");
+    }
+    let list = folder.expect_exit(0, "words").out;
+    assert_eq!(list.matches("\n  Noise ").count(), 1, "{list}");
     folder.expect_failure(2, "words Spehre", &["did you mean `Sphere`?"]);
     folder.expect_failure(2, "words xyzzyx", &["lists them all"]);
 }
@@ -163,6 +179,8 @@ fn info_of_a_luminaire() {
     let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info panel.ies --json").out).unwrap();
     assert!((json["efficacy_lm_per_w"].as_f64().unwrap() - 78.54).abs() < 0.02);
     folder.expect_failure(2, "info scene.txt --polar panel.svg", &["--polar needs a photometric file"]);
+    folder.expect_failure(2, "info panel.ies --polar panel.png", &["must end in .svg"]);
+    assert!(!folder.path("panel.png").exists());
     folder.expect_failure(2, "info none.ies", &["none.ies"]);
     folder.write("broken.ies", file.replace("TILT=NONE", ""));
     folder.expect_failure(2, "info broken.ies", &["broken.ies:1:1", "TILT="]);

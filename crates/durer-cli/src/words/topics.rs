@@ -1,0 +1,90 @@
+//! Terms that users look up and that are not words of the language: synonyms, options of commands,
+//! and examples.
+
+/// Synonyms of terms that users look up and that the manual does not use.
+pub const SYNONYMS: &[(&str, &[&str])] = &[
+    ("glass", &["refract", "transmission", "transparent"]),
+    ("refraction", &["refract"]),
+    ("lens", &["aperture", "focus"]),
+    ("dof", &["focus", "aperture"]),
+    ("depth of field", &["focus", "aperture"]),
+    ("ies", &["photometric", "ies"]),
+    ("area light", &["emission", "emits"]),
+    ("lamp", &["light"]),
+    ("emission", &["emission", "emits"]),
+    ("glow", &["emission", "emits"]),
+    ("mirror", &["reflect"]),
+    ("metal", &["metal"]),
+    ("shiny", &["exponent", "roughness"]),
+    ("hdri", &["environment"]),
+    ("skybox", &["environment"]),
+    ("sun", &["sun"]),
+    ("fog", &["fog", "medium", "scatter"]),
+    ("smoke", &["fog", "medium", "scatter"]),
+    ("csg", &["difference", "intersection", "union"]),
+    ("boolean", &["difference", "intersection", "union"]),
+    ("model", &["mesh"]),
+    ("transparency", &["transparent", "opacity"]),
+    ("bump", &["bump", "normal map"]),
+    ("size", &["size", "scale"]),
+];
+
+/// Terms that concern a command rather than the language, with what to use.
+const TOPICS: &[(&[&str], &str)] = &[
+    (
+        &["supersampling", "antialiasing", "anti-aliasing", "multisampling", "jaggies", "aliasing"],
+        "`durer render --samples 64` takes 64 samples per pixel, and `--filter` sets how they are averaged",
+    ),
+    (
+        &["daylight factor", "daylight factors", "daylight"],
+        "`cieSky` in `Background` sets a CIE sky and `durer measure` the illuminance inside and outside; docs/light.md has the \
+         steps",
+    ),
+    (
+        &["illuminance", "lux", "isolux", "uniformity", "irradiance"],
+        "`durer measure` computes it at points and on grids, and `durer render --show illuminance` for each pixel",
+    ),
+    (
+        &["ugr", "glare"],
+        "UGR is not computed; `durer render --show luminance` writes the luminances in cd/m^2 that it is based on",
+    ),
+    (
+        &["transparent background", "alpha", "alpha channel"],
+        "pictures have no transparency, and the camera sees the scene's `Background`",
+    ),
+    (
+        &["statistics", "stats", "timings", "ray counts"],
+        "`durer render --stats` prints times and ray counts, and `--stats=FILE.json` writes them; `durer info` describes the \
+         scene",
+    ),
+    (&["denoise", "denoising", "noise reduction"], "`durer render --denoise` removes noise; see also `--samples`"),
+    (&["exposure", "brightness"], "`durer render --exposure auto` or a number of stops, and `--tone` for a tone curve"),
+    (&["resolution", "picture size", "image size"], "`durer render --size 640x480`"),
+];
+
+/// Materials to copy, for terms that describe a look.
+const EXAMPLES: &[(&[&str], &str)] = &[
+    (
+        &["glass", "refraction"],
+        "PrincipledMaterial { preset glass }\n  in a course scene: PhongMaterial { diffuseColor 0 0 0 specularColor 1 1 1 \
+         refractionIndex 1.5 }",
+    ),
+    (&["mirror"], "PrincipledMaterial { preset silver specularRoughness 0 }"),
+    (&["metal"], "PrincipledMaterial { preset gold }"),
+    (&["area light", "emission", "glow"], "PrincipledMaterial { baseColor 0 0 0 emissionLuminance 20 }"),
+];
+
+/// Returns what to use for a term that concerns a command.
+pub fn topic(term: &str) -> Option<&'static str> {
+    find(TOPICS, term)
+}
+
+/// Returns a material to copy for a term.
+pub fn example(term: &str) -> Option<&'static str> {
+    find(EXAMPLES, term)
+}
+
+fn find(rows: &[(&[&str], &'static str)], term: &str) -> Option<&'static str> {
+    let term = term.to_lowercase();
+    rows.iter().find(|(terms, _)| terms.contains(&term.trim())).map(|row| row.1)
+}
