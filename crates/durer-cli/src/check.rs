@@ -10,6 +10,7 @@ mod views;
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
+use crate::open::{is_stream, name_of, read_standard_input};
 use crate::report::counted;
 use crate::terminal::print_line;
 use crate::{output, report};
@@ -18,6 +19,7 @@ use durer::check::{CHECKS, Finding};
 use durer::diag::{Edit, Severity};
 use durer::format::folder::FolderSource;
 use std::path::Path;
+use std::sync::Arc;
 
 pub use args::CheckArgs;
 use change::Change;
@@ -61,8 +63,20 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
 
 /// Checks one scene, applies fixes with `--fix`, and prints the findings.
 fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Failure> {
-    let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
-    let bytes = bytes.map_err(report::unreadable)?;
+    let is_standard_input = is_stream(path);
+    let (path, bytes): (&Path, Arc<[u8]>) = match is_standard_input {
+        true if args.fix && args.output.is_none() => {
+            return Err(invalid_input("--fix cannot change standard input in place: name a file with --output"));
+        }
+        true => {
+            let bytes = read_standard_input(args.reading.memory.limit())?;
+            (Path::new(name_of(&bytes)), bytes.into())
+        }
+        false => {
+            let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
+            (path, bytes.map_err(report::unreadable)?)
+        }
+    };
     let mut checked = check_text(path, bytes.clone(), args)?;
     let mut changes = Vec::new();
     if !args.fix {
@@ -72,7 +86,9 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Fai
         let mut registry = FileRegistry::default();
         let place = match &args.output {
             Some(other) => {
-                registry.register_input(path)?;
+                if !is_standard_input {
+                    registry.register_input(path)?;
+                }
                 registry.register_output("--output", other)?
             }
             // Without --output, the scene file itself is replaced.

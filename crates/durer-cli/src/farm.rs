@@ -9,6 +9,7 @@ use crate::render::RenderCommand;
 use crate::terminal::print_line;
 use clap::{Args, FromArgMatches};
 use quote::{bash_word, bash_word_of_frame, not_an_option, python_list, python_string};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 const SLURM: &str = include_str!("farm/slurm.sh");
@@ -26,7 +27,7 @@ const DASK: &str = include_str!("farm/dask.py");
   durer farm walk.glb --template slurm --frames 0-239 --fps 24 --samples 64 > job.sh && sbatch job.sh
 
 Each shard is a `durer render --shard` command that can be repeated on another machine. `durer merge` produces the same
-bytes as a single run. Options of `durer render` come after the farm options and are checked when the job file is printed.")]
+bytes as a single run. Options of `durer render` can also be given; they are checked when the job file is printed.")]
 pub struct FarmArgs {
     /// Scene file
     pub scene: PathBuf,
@@ -42,8 +43,38 @@ pub struct FarmArgs {
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
     /// Options of `durer render`
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "RENDER OPTIONS")]
     pub options: Vec<String>,
+}
+
+/// Options of `durer farm` that can stand between options of `durer render`.
+const OWN: [&str; 6] = ["--output", "--template", "--shards", "--frames", "--fps", "--turntable"];
+
+/// Moves the options of `durer farm` to the front, because everything after the first option of
+/// `durer render` belongs to the latter.
+pub fn own_options_first(words: Vec<OsString>) -> Vec<OsString> {
+    if words.get(1).is_none_or(|word| word != "farm") {
+        return words;
+    }
+    let (mut own, mut others) = (Vec::new(), Vec::new());
+    let mut rest = words.into_iter();
+    let name: Vec<OsString> = rest.by_ref().take(2).collect();
+    while let Some(word) = rest.next() {
+        let text = word.to_string_lossy().into_owned();
+        let is_joined = text.split_once('=').is_some_and(|(name, _)| OWN.contains(&name));
+        if text == "--" {
+            others.push(word);
+            others.extend(rest.by_ref());
+        } else if OWN.contains(&&*text) || text == "-o" {
+            own.push(word);
+            own.extend(rest.next());
+        } else if is_joined || text.starts_with("-o") && !text.starts_with("--") {
+            own.push(word);
+        } else {
+            others.push(word);
+        }
+    }
+    name.into_iter().chain(own).chain(others).collect()
 }
 
 /// Runs `durer farm` and prints the job file.

@@ -79,7 +79,7 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
             .map(|word| word.into_string().map_err(|word| invalid_input(format!("{word:?} is not UTF-8"))))
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
-        None => match parsed(explain::split_ray_argument(words)).command {
+        None => match parsed(farm::own_options_first(explain::split_ray_argument(words))).command {
             Command::Render(args) => render::run(*args),
             Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),

@@ -45,14 +45,31 @@ fn load_file(
     if !is_stream(path) {
         return load(path, options, files, diagnostics).map_err(report::unreadable);
     }
-    let limit = options.memory.unwrap_or(u64::MAX);
+    let bytes = read_standard_input(options.memory.unwrap_or(u64::MAX))?;
+    Ok(load_text(Path::new(name_of(&bytes)), bytes.into(), options, files, diagnostics))
+}
+
+/// Reads standard input to its end, up to `limit` bytes.
+pub fn read_standard_input(limit: u64) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let read = std::io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut bytes);
     read.map_err(|error| anyhow::anyhow!("cannot read standard input: {error}"))?;
     if bytes.len() as u64 > limit {
         return Err(anyhow::anyhow!("the scene on standard input does not fit into memory; see `--memory`").into());
     }
-    Ok(load_text(Path::new("standard-input"), bytes.into(), options, files, diagnostics))
+    Ok(bytes)
+}
+
+/// Returns the name for a scene on standard input. OBJ files are recognised only by their
+/// extension, so a text whose first words are those of an OBJ file gets it.
+pub fn name_of(bytes: &[u8]) -> &'static str {
+    const WORDS: [&[u8]; 9] = [b"v", b"vn", b"vt", b"o", b"g", b"s", b"f", b"mtllib", b"usemtl"];
+    let words = |line: &'_ [u8]| line.split(u8::is_ascii_whitespace).find(|word| !word.is_empty()).map(<[u8]>::to_vec);
+    let mut first = bytes.split(|byte| *byte == b'\n').filter_map(words).filter(|word| !word.starts_with(b"#"));
+    match first.next() {
+        Some(word) if WORDS.contains(&&*word) => "standard-input.obj",
+        _ => "standard-input",
+    }
 }
 
 /// Reads a scene without compiling it.
@@ -120,5 +137,20 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
         placement: args.placement.placement(),
         scene_defaults: args.scene_defaults.scene_defaults(),
         ..LoadOptions::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::name_of;
+
+    #[test]
+    fn obj_on_standard_input_is_recognised() {
+        for text in ["v 0 0 0\n", "# made by hand\r\n\r\no ball\r\nv 0 0 0", "mtllib a.mtl\n"] {
+            assert_eq!(name_of(text.as_bytes()), "standard-input.obj", "{text}");
+        }
+        for text in ["", "# v\n", "Group { Sphere { radius 1 } }", "void plastic", "ply\n", "{\"a\": 1}"] {
+            assert_eq!(name_of(text.as_bytes()), "standard-input", "{text}");
+        }
     }
 }

@@ -244,3 +244,51 @@ fn options_of_other_programs_are_pointed_to_ours() {
     assert!(output.err.contains("use `--json` for the full output"), "{}", output.err);
     assert!(!output.err.contains("--stats"), "{}", output.err);
 }
+
+/// Options that do not apply are refused instead of ignored.
+#[test]
+fn options_without_effect_are_refused() {
+    let folder = TestFolder::new();
+    for (options, help) in [
+        ("--view top", "--eye"),
+        ("--fit", "--target"),
+        ("--camera 3", "--eye"),
+        ("--up z", "Transform"),
+        ("--studio sun", "Background"),
+        ("--environment sky.hdr", "environment FILE"),
+        ("--variant x", "Materials"),
+        ("--at 3", "animation"),
+        ("--turned 90", "durer convert"),
+    ] {
+        let option = options.split(' ').next().unwrap();
+        folder.expect_failure(2, &format!("render scene.txt -o a.png {options}"), &[option, "to models", help]);
+    }
+    assert!(!folder.path("a.png").exists());
+    folder.expect_failure(2, "explain scene.txt --pixel 3,3 -o a.png", &["`-o` is an option of `durer render`"]);
+    folder.expect_failure(2, "explain scene.txt --pixel 3,3 --stats", &["`--stats` is an option of `durer render`"]);
+    folder.expect_failure(2, "render .", &["a folder"]);
+    folder.expect_failure(2, "render scene.txt --time-limit 3", &["with its unit, for example 30s"]);
+    folder.expect_failure(2, "render scene.txt --json", &["--stats=FILE.json"]);
+    folder.expect_failure(2, "render scene.txt --stats=a.txt", &["must end in .json"]);
+    folder.expect_exit(0, "render scene.txt -o a.png --size 16x12 --stats=a.json");
+    folder.expect_failure(2, "compare a.png -", &["reads files only"]);
+    let statistics: serde_json::Value = serde_json::from_slice(&folder.bytes("a.json")).unwrap();
+    assert!(statistics["rays"].as_u64().unwrap() > 100 && statistics["seconds"]["rendering"].is_f64(), "{statistics}");
+}
+
+/// `check` reads standard input, and OBJ files there are recognised by their content.
+#[test]
+fn scenes_come_from_standard_input() {
+    let folder = TestFolder::new();
+    for (arguments, text, part) in [
+        ("check -", common::SCENE, "standard-input: no findings"),
+        ("info -", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "triangles  1"),
+    ] {
+        folder.write("input", text);
+        let mut command = folder.command(arguments);
+        let output = command.stdin(std::fs::File::open(folder.path("input")).unwrap()).output().unwrap();
+        let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success() && out.contains(part), "{arguments}: {out}{err}");
+    }
+    folder.expect_failure(2, "check - --fix", &["--output"]);
+}

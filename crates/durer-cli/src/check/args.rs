@@ -24,7 +24,7 @@ ruins the entire picture. Later versions may add fields, but the meaning of a co
 Exit code: 0 if there are no findings or only notes, 1 if there are warnings, 2 if the scene cannot be rendered or an option
 is invalid.")]
 pub struct CheckArgs {
-    /// Scene files
+    /// Scene files; `-` is standard input
     #[arg(required_unless_present = "codes", value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]

@@ -20,11 +20,13 @@ use std::path::PathBuf;
   durer compare reference/ class/ --table class.csv --report class.html
 
 Pictures in folders are matched by name; their extensions may differ. If no name in REFERENCE exists in PICTURE itself, each
-folder in PICTURE counts as one student's submission.
+folder in PICTURE counts as one student's submission. Pictures are read from files, not from standard input.
+
 With --scene, the output lists for each differing region the object, its position in the file, its normal, and an
 explanation of the ray's colour. Pass the options that the reference was rendered with. With --table, each picture has its own
 scene and options; a line of the table is, for example: `mirrors.png,scenes/mirrors.txt,--bounces 4 --samples 1`. Options in the
 table replace those of the command line.
+
 Exit code: 0 if the pictures are equal within the tolerance, 1 if one is different or missing, 2 if a picture cannot be
 read, sizes differ, an option is invalid, or a file cannot be written.")]
 pub struct CompareArgs {

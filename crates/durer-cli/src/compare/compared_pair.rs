@@ -40,6 +40,10 @@ impl ComparedPair {
     /// Returns lines that explain the difference.
     pub fn causes(&self) -> Vec<String> {
         match (&self.outcome, &self.diagnosis) {
+            // What the pictures alone show is still true if the scene does not explain more.
+            (Outcome::Compared(comparison), Some(diagnosis)) if has_only_findings(comparison, diagnosis) => {
+                explained(comparison).into_iter().chain(mistakes::lines(diagnosis)).collect()
+            }
             (_, Some(diagnosis)) => mistakes::lines(diagnosis),
             (Outcome::Compared(comparison), None) => explained(comparison),
             _ => Vec::new(),
@@ -50,6 +54,9 @@ impl ComparedPair {
     /// are none.
     pub fn mistakes(&self) -> String {
         let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
+            (Outcome::Compared(comparison), Some(diagnosis)) if has_only_findings(comparison, diagnosis) => {
+                comparison.findings.iter().map(|finding| finding.kind).collect()
+            }
             (_, Some(diagnosis)) => diagnosis
                 .explanations
                 .first()
@@ -78,6 +85,12 @@ impl ComparedPair {
 /// Returns the name of a pair, preceded by the student's name.
 pub fn name(pair: &Pair) -> String {
     pair.student.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
+}
+
+/// Returns true if the pictures alone explain a difference, but the search in the scene does not.
+fn has_only_findings(comparison: &Comparison, diagnosis: &Diagnosis) -> bool {
+    let is_unknown = diagnosis.explanations.is_empty() && diagnosis.nearly.is_none() && diagnosis.remark.is_none();
+    is_unknown && comparison.verdict == Verdict::Different && !comparison.findings.is_empty()
 }
 
 /// Explains a difference from the pictures alone, with one line per cause.

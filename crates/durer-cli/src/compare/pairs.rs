@@ -1,6 +1,7 @@
 //! Forms pairs of the pictures in two files or folders.
 
 use crate::failure::{Failure, invalid_input};
+use crate::open::is_stream;
 use durer::image::format_for;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,9 @@ const DEPTH: usize = 16;
 /// Pairs two pictures, or pairs the pictures with the same names in two folders.
 pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     for path in [reference, picture] {
+        if is_stream(path) {
+            return Err(invalid_input("`durer compare` reads files only: a picture cannot come from standard input"));
+        }
         if !path.exists() {
             return Err(invalid_input(format!("cannot read `{}`: no such file or folder", path.display())));
         }

@@ -229,3 +229,17 @@ fn job_names_are_valid_host_names() {
         assert!(job.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-'), "{job}");
     }
 }
+
+#[test]
+fn own_options_can_follow_options_of_render() {
+    let moved = |line: &str| -> String {
+        let words = own_options_first(line.split(' ').map(Into::into).collect());
+        words.iter().map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(
+        moved("durer farm a.txt --samples 8 --shards 3 --size 4x3 -o b.png --fps=25"),
+        "durer farm --shards 3 -o b.png --fps=25 a.txt --samples 8 --size 4x3"
+    );
+    assert_eq!(moved("durer farm a.txt -ob.png -- --shards 3"), "durer farm -ob.png a.txt -- --shards 3");
+    assert_eq!(moved("durer render a.txt -o b.png"), "durer render a.txt -o b.png");
+}
