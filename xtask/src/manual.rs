@@ -81,8 +81,8 @@ fn index() -> String {
          -2 -1 color 0.9 0.9 0.8 }} }}\nMaterials {{ PhongMaterial {{ diffuseColor 0.8 0.3 0.2 }} }}\nGroup {{ MaterialIndex \
          0 Sphere {{ center 0 0.5 0 radius 1 }} }}\n```\n\nComments begin with `#`. Lengths are in the units of the scene, \
          angles in degrees, colours linear Rec.709 from 0 to 1 (and beyond). Words of the course's own years are marked with \
-         their dialects; `durer dialects` explains these, `durer words WORD` tells what is here in a terminal. \
-         `docs/editors/durer.tmLanguage.json` is a TextMate grammar that editors colour scenes with.\n\nThe same can be said \
+         their dialects; `durer dialects` explains these, `durer words WORD` prints the entry of a word. \
+         `docs/editors/durer.tmLanguage.json` is a TextMate grammar, with which editors colour scenes.\n\nThe same can be said \
          [as JSON](json.md).\n"
     );
     for chapter in Chapter::ALL {
