@@ -1,25 +1,37 @@
-import type { ComponentChildren } from "preact";
-import { useState } from "preact/hooks";
+import { type ComponentChildren, createContext } from "preact";
+import { useContext, useState } from "preact/hooks";
 import { Switch } from "../ui/switch";
 
 export { Choice } from "../ui/choice";
 export { Switch };
 
-/** Layout of a figure: a drawing, its controls, and its equations. */
+/** True once the engine has answered the questions of the figure. */
+const Ready = createContext(true);
+
+/**
+ * Layout of a figure: a drawing, its controls, and its equations. The equations have no numbers until the figure is
+ * `ready`, because numbers without an answer would be wrong.
+ */
 export function Figure({
   stage,
   controls,
   children,
+  ready = true,
 }: {
   stage: ComponentChildren;
   controls?: ComponentChildren;
   children?: ComponentChildren;
+  ready?: boolean;
 }) {
   return (
     <figure class="figure">
       {stage}
       {controls && <div class="controls">{controls}</div>}
-      {children && <figcaption class="equations">{children}</figcaption>}
+      {children && (
+        <Ready.Provider value={ready}>
+          <figcaption class="equations">{children}</figcaption>
+        </Ready.Provider>
+      )}
     </figure>
   );
 }
@@ -32,10 +44,11 @@ export function Equation({
   children: ComponentChildren;
   numbers?: ComponentChildren;
 }) {
+  const ready = useContext(Ready);
   return (
     <div class="equation">
       <div class="symbols">{children}</div>
-      {numbers && <div class="numbers">{numbers}</div>}
+      {ready && numbers && <div class="numbers">{numbers}</div>}
     </div>
   );
 }

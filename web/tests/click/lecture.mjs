@@ -50,7 +50,7 @@ const near = (a, b, error, what) => {
 
 await test("numbers: homogeneous", wide, async (page) => {
   await open(page, "#/lecture/homogeneous");
-  near((await told(page, /2\.00 = ([\d.]+)/))[0], 0.8, 1e-9, "1.6 / 2");
+  near((await told(page, /\/ 2\.00 = ([\d.]+)/))[0], 0.8, 1e-9, "1.6 / 2");
   await page.getByRole("slider", { name: "move by" }).fill("1");
   // The ray is cast in the background, so the old quotient is shown for a moment.
   await told(page, /3\.60 \/ 2\.00 = 1\.800?\D/);
@@ -167,6 +167,7 @@ await test("present", { viewport: { width: 1600, height: 900 } }, async (page) =
   await page.waitForSelector(".answer");
   await page.keyboard.press("PageDown");
   await page.waitForFunction(() => document.querySelector("h1")?.textContent === "Transforms");
+  await page.waitForSelector(".equation .numbers");
   const sizes = await page.evaluate(() =>
     [".lead", ".equation .symbols", ".equation .numbers"].map(
       (name) => Number.parseFloat(getComputedStyle(document.querySelector(name)).fontSize) / innerHeight,

@@ -60,6 +60,7 @@ function BarycentricFigure() {
   const beyond = (to: Point): Point => [a[0] + 8 * (to[0] - a[0]), a[1] + 8 * (to[1] - a[1])];
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <div class="layers">
           {shows !== "areas" && <Backdrop key={shows} session={mesh} picture={shows} />}

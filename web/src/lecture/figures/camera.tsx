@@ -72,6 +72,7 @@ function CameraFigure() {
   const end = tree?.segment?.to ?? place(3 * x, 3 * y);
   return (
     <Figure
+      ready={account !== null}
       stage={
         <div class="beside">
           <Stage session={stage} eye={eye} setEye={setEye} label="The camera seen from outside">

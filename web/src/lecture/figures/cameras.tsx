@@ -151,11 +151,12 @@ function CamerasFigure() {
   const mistake = useFigureMistake(image, "transposed", [width / 2, Math.ceil(height / 2)], [text]);
   const columns = 15;
   const rows = Math.max(5, Math.round((columns * height) / width) | 1);
-  const rays = useAnswer(image, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
-  const there = rays.filter((ray): ray is CameraRay => ray !== null);
+  const answer = useAnswer(image, { kind: "rays", columns, rows, row: null }, "rays", text);
+  const there = (answer?.rays ?? []).filter((ray): ray is CameraRay => ray !== null);
   const originCount = new Set(there.map(({ origin }) => origin.map((c) => c.toFixed(4)).join(" "))).size;
   return (
     <Figure
+      ready={answer !== null}
       stage={
         <div class="beside">
           <Stage session={outside} eye={eye} setEye={setEye} label={`The rays of the camera: ${kind.name}`}>

@@ -25,6 +25,7 @@ function HomogeneousFigure() {
   const shown = undivided ? moved[0] : met;
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Plot reach={[4.8, 2.7]} middle={[0, 1.2]} label="Points with a weight w, and the line w = 1">
           {(scale) => (

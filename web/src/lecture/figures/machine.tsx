@@ -90,6 +90,7 @@ function MachineFigure() {
 
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Stage
           session={stage}

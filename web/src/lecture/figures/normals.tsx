@@ -42,6 +42,7 @@ function NormalsFigure() {
   );
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <div class="beside">
           <Plot reach={[4.4, 2.45]} label="A sheared circle with a tangent and two normals">

@@ -75,6 +75,7 @@ function ObscuraFigure() {
   );
   return (
     <Figure
+      ready={casts.length > 0}
       stage={
         <div class="beside">
           <Stage

@@ -33,6 +33,7 @@ function PlaneFigure() {
   const along = (s: number): Point => [foot[0] - n[1] * s, foot[1] + n[0] * s];
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Plot reach={[4.8, 2.7]} label="A ray and a plane, seen from the side">
           {(scale) => {

@@ -44,6 +44,7 @@ function RayFigure() {
   const hit = cast?.hit ?? null;
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <div class="beside">
           <Stage session={session} eye={eye} setEye={setEye} label="A ray in space, with a point on it">

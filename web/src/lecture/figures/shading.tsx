@@ -55,6 +55,7 @@ function ShadingFigure() {
   const power = number(light, "power");
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Stage
           session={session}

@@ -51,6 +51,7 @@ function ShadowFigure() {
   const color = blocker ? "var(--ray-shadowed)" : "var(--ray-lit)";
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Stage
           session={session}

@@ -67,6 +67,7 @@ function SolidsFigure() {
   const at = (s: number): Point => [origin[0] + s * d[0], origin[1] + s * d[1]];
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <Plot
           reach={[4.4, 2.6]}

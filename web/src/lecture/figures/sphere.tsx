@@ -30,6 +30,7 @@ function SphereFigure() {
   const at = (t: number): Point => [origin[0] + t * d[0], origin[1] + t * d[1]];
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <div class="stacked">
           <Plot reach={[4.8, 1.95]} aspect={2.4} label="A ray and a sphere in a plane that contains the ray">

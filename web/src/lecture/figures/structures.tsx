@@ -53,6 +53,7 @@ function StructuresFigure() {
   const end = now?.closest ?? null;
   return (
     <Figure
+      ready={walk !== null}
       stage={
         <Stage
           session={session}

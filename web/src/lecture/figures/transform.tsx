@@ -38,6 +38,7 @@ function TransformFigure() {
   const on = (o: Point, v: Point, s: number): Point => [o[0] + s * v[0], o[1] + s * v[1]];
   return (
     <Figure
+      ready={cast !== null}
       stage={
         <div class="halves">
           <Plot reach={[3.6, 2.9]} aspect={1.22} label="World space: the ellipse, and the ray as it is">
