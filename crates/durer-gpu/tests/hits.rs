@@ -94,7 +94,7 @@ fn hits_equal_those_of_the_cpu_except_near_edges() {
     for (name, world) in &worlds {
         let rays = rays(world, &mut random, RAYS);
         let found = SceneBuffers::for_hits(&gpu, world).unwrap().hits(&rays).unwrap();
-        let (mut hits, mut ties, mut worst) = (0, 0, 0.0_f32);
+        let (mut hits, mut ties, mut shared, mut worst) = (0, 0, 0, 0.0_f32);
         for (ray, found) in rays.iter().zip(&found) {
             let hit = world.closest(ray, &mut ());
             hits += u32::from(hit.is_some());
@@ -108,14 +108,20 @@ fn hits_equal_those_of_the_cpu_except_near_edges() {
                 _ => false,
             };
             if !same {
-                ties += 1;
+                // A block that stands on a floor has points that belong to both, and either may be hit.
+                let is_shared = matches!((&hit, found), (Some(hit), Some(found))
+                    if hit.object != found.object && (hit.t - found.t).abs() <= 1e-5 * (1.0 + hit.t.abs()));
+                *(if is_shared { &mut shared } else { &mut ties }) += 1;
                 assert!(
                     is_near_tie(world, ray, found.as_ref(), &mut random),
                     "{name}: {ray:?}: {hit:?} instead of {found:?}"
                 );
             }
         }
-        report += &format!("{name}: {} rays, {hits} hits, {ties} near edges, t within {worst:.1e}\n", rays.len());
+        report += &format!(
+            "{name}: {} rays, {hits} hits, {ties} near edges, {shared} on two objects, t within {worst:.1e}\n",
+            rays.len()
+        );
         assert!(hits as usize > RAYS / 10 && ties < RAYS / 1000, "{report}");
     }
     eprint!("{report}");
