@@ -108,7 +108,8 @@ fn hits_equal_those_of_the_cpu_except_near_edges() {
                 _ => false,
             };
             if !same {
-                // A block that stands on a floor has points that belong to both, and either may be hit.
+                // A block that stands on a floor has points that belong to both, and either may be
+                // hit.
                 let is_shared = matches!((&hit, found), (Some(hit), Some(found))
                     if hit.object != found.object && (hit.t - found.t).abs() <= 1e-5 * (1.0 + hit.t.abs()));
                 *(if is_shared { &mut shared } else { &mut ties }) += 1;
