@@ -2,6 +2,7 @@
 
 use super::brightness::brightest;
 use super::finding::vector;
+use super::lines::lines;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::Material;
@@ -71,18 +72,15 @@ fn statement(scene_probe: &SceneProbe, material: Span, word: &str) -> Option<(Sp
     let files = scene_probe.input.files;
     let bytes =
         files.bytes(material.file).filter(|_| files.name(material.file).is_some_and(|n| n.ends_with(".mtl")))?;
-    let mut start = material.start as usize;
-    for line in bytes.get(start..)?.split_inclusive(|b| *b == b'\n') {
-        let text = String::from_utf8_lossy(line.trim_ascii());
+    for (span, line) in lines(bytes, material.file).skip_while(|(span, _)| span.start < material.start) {
+        let text = String::from_utf8_lossy(line);
         let mut words = text.split_ascii_whitespace();
         match words.next() {
             Some("newmtl") => return None,
             Some(first) if first == word => {
-                let end = start + line.trim_ascii_end().len();
-                let values: Vec<f32> = words.map_while(|word| word.parse().ok()).collect();
-                return Some((Span { file: material.file, start: start as u32, end: end as u32 }, values));
+                return Some((span, words.map_while(|word| word.parse().ok()).collect()));
             }
-            _ => start += line.len(),
+            _ => {}
         }
     }
     None

@@ -1,6 +1,7 @@
 //! Checks the meshes of a scene: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
+use super::lines::lines;
 use super::mesh_files::topology::Topology;
 use super::mesh_files::{Inwards, MeshFile};
 use super::scene_probe::SceneProbe;
@@ -144,17 +145,15 @@ pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
 pub(super) fn large_faces<'s>(scene_probe: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scene_probe.input.files.bytes(mesh.file)?;
-        let (mut start, mut all, mut large, mut first) = (0, 0, 0, None);
-        for line in bytes.split_inclusive(|b| *b == b'\n') {
+        let (mut all, mut large, mut first) = (0, 0, None);
+        for (span, line) in lines(bytes, mesh.file) {
             if line.starts_with(b"f ") || line.starts_with(b"f\t") {
                 all += 1;
                 if line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() > 4 {
                     large += 1;
-                    let end = start + line.trim_ascii_end().len();
-                    first.get_or_insert(Span { file: mesh.file, start: start as u32, end: end as u32 });
+                    first.get_or_insert(span);
                 }
             }
-            start += line.len();
         }
         Some((&*mesh.name.path, large, all, first?))
     };
@@ -219,15 +218,10 @@ fn has_different_normal(corner: &str) -> bool {
 
 /// Returns the first face of an OBJ file that has a corner with a property.
 fn first_face(bytes: &[u8], file: u32, is_wanted: impl Fn(&str) -> bool) -> Option<Span> {
-    let mut start = 0;
-    for line in bytes.split_inclusive(|b| *b == b'\n') {
-        if line.starts_with(b"f ") && String::from_utf8_lossy(line).split_ascii_whitespace().skip(1).any(&is_wanted) {
-            let end = start + line.trim_ascii_end().len();
-            return Some(Span { file, start: start as u32, end: end as u32 });
-        }
-        start += line.len();
-    }
-    None
+    let has_corner = |line: &[u8]| {
+        line.starts_with(b"f ") && String::from_utf8_lossy(line).split_ascii_whitespace().skip(1).any(&is_wanted)
+    };
+    lines(bytes, file).find(|(_, line)| has_corner(line)).map(|(span, _)| span)
 }
 
 /// Reports triangles whose winding is opposite to that of their neighbours.

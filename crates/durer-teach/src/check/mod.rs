@@ -30,6 +30,7 @@ mod invisible;
 mod layers;
 mod lens;
 mod lights;
+mod lines;
 mod mesh;
 mod mesh_files;
 mod names;

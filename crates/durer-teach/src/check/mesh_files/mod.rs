@@ -4,6 +4,7 @@ pub(super) mod normals;
 pub(super) mod topology;
 
 use crate::check::finding::vector;
+use crate::check::lines::lines;
 use crate::check::probes::ProbeGrid;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_formats::read_mesh;
@@ -111,18 +112,16 @@ impl MeshFile<'_> {
     /// with n vertices has n - 2 triangles.
     pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
         let bytes = grid.input.files.bytes(self.file)?;
-        let (mut start, mut before, mut found) = (0, 0, None);
-        for line in bytes.split_inclusive(|b| *b == b'\n') {
+        let (mut before, mut found) = (0, None);
+        for (span, line) in lines(bytes, self.file) {
             if line.starts_with(b"f ") || line.starts_with(b"f\t") {
                 let corners = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() - 1;
                 let here = before..before + corners.saturating_sub(2);
                 if here.contains(&(triangle as usize)) {
-                    let end = start + line.trim_ascii_end().len();
-                    found = Some(Span { file: self.file, start: start as u32, end: end as u32 });
+                    found = Some(span);
                 }
                 before = here.end;
             }
-            start += line.len();
         }
         found.filter(|_| before == self.data.triangles.len())
     }
@@ -131,18 +130,13 @@ impl MeshFile<'_> {
     pub(super) fn vertex(&self, grid: &ProbeGrid, position: Vec3) -> Option<Span> {
         let file = if self.file == u32::MAX { self.name.span.file } else { self.file };
         let bytes = grid.input.files.bytes(file).filter(|_| grid.input.files.name(file).is_some_and(is_obj))?;
-        let mut start = 0;
-        for line in bytes.split_inclusive(|b| *b == b'\n') {
+        let is_there = |line: &[u8]| {
             let text = str::from_utf8(line).unwrap_or_default().trim();
             let mut words = text.strip_prefix("v ").unwrap_or_default().split_ascii_whitespace();
             let numbers = [(); 3].map(|()| words.next().and_then(|word| word.parse::<f32>().ok()));
-            if numbers == position.to_array().map(Some) {
-                let end = start + line.trim_ascii_end().len();
-                return Some(Span { file, start: start as u32, end: end as u32 });
-            }
-            start += line.len();
-        }
-        None
+            numbers == position.to_array().map(Some)
+        };
+        lines(bytes, file).find(|(_, line)| is_there(line)).map(|(span, _)| span)
     }
 
     /// Places a warning about triangles at the first of them, or at the place where the scene names
