@@ -49,8 +49,8 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
             ),
         };
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
-        if let Some(aimed) = aimed_profile(scene_probe, light, to) {
-            return aimed_at(scene_probe, diagnostic, light, aimed, model);
+        if !reaches(scene_probe, light, to, to) {
+            return turned_over(scene_probe, diagnostic, light, to);
         }
         match scene_probe.field_span(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
@@ -60,39 +60,28 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Direction that makes a photometric light reach the objects, or `None` if no direction does.
-type AimedProfile = Option<Vec3>;
-
-/// Returns the direction to help with if a photometric light would not reach the objects with its
-/// axis pointed at them, because its profile has no light along the axis.
-fn aimed_profile(scene_probe: &SceneProbe, light: &Spanned<Light>, to: Vec3) -> Option<AimedProfile> {
-    let number = scene_probe.input.scene.lights.iter().flatten().position(|other| std::ptr::eq(other, light))?;
-    let profile = scene_probe.world().profiles().get(number)?.as_ref()?;
-    let Light::Photometric(own) = &light.value else { return None };
-    let reaches = |direction: Vec3| {
-        let turned = PhotometricLight { direction, ..own.clone() };
-        profile.at(turned.to_profile(to)) > 0.02 * profile.max_candela()
-    };
-    if reaches(to) {
-        return None;
-    }
-    let opposite = -own.direction;
-    Some([opposite, -to].into_iter().find(|direction| reaches(*direction)))
+/// Returns true if a photometric light with a given direction would reach the objects, which are in
+/// the direction `to`.
+fn reaches(scene_probe: &SceneProbe, light: &Spanned<Light>, direction: Vec3, to: Vec3) -> bool {
+    let Light::Photometric(own) = &light.value else { return true };
+    let number = scene_probe.input.scene.lights.iter().flatten().position(|other| std::ptr::eq(other, light));
+    let Some(Some(profile)) = number.and_then(|number| scene_probe.world().profiles().get(number)) else { return true };
+    let turned = PhotometricLight { direction, ..own.clone() };
+    profile.at(turned.to_profile(to)) > 0.02 * profile.max_candela()
 }
 
-/// Places a finding about a photometric light whose profile has no light along its axis.
-fn aimed_at(
-    scene_probe: &SceneProbe,
-    diagnostic: Diagnostic,
-    light: &Spanned<Light>,
-    aimed: AimedProfile,
-    is_model: bool,
-) -> Diagnostic {
+/// Places a finding about a photometric light whose profile has no light along its axis, so that
+/// pointing the axis at the objects, which are in the direction `to`, would not help.
+fn turned_over(scene_probe: &SceneProbe, diagnostic: Diagnostic, light: &Spanned<Light>, to: Vec3) -> Diagnostic {
     let why = "the luminaire emits no light along its axis";
     let value = scene_probe.field_span(light.span, &["direction"]);
     let diagnostic = Diagnostic { span: value.or(diagnostic.span), ..diagnostic };
-    match aimed {
-        _ if is_model => diagnostic.help(format!("turn the light over, or use another luminaire: {why}")),
+    if scene_probe.model_format().is_some() {
+        return diagnostic.help(format!("turn the light over, or use another luminaire: {why}"));
+    }
+    let opposite = light.value.direction().map(|direction| -direction);
+    let mut others = opposite.into_iter().chain([-to]);
+    match others.find(|direction| reaches(scene_probe, light, *direction, to)) {
         Some(direction) => {
             let text = vector(direction);
             let help = format!("write `direction {text}`, which turns the light over: {why}, but on its other side");
