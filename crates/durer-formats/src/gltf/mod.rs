@@ -96,8 +96,8 @@ struct Model<'a> {
     colored: Vec<bool>,
     /// Flag for each material, which is true if the material needs tangents.
     needs_tangents: Vec<bool>,
-    /// JSON pointer to the first `texCoord` of 1 in each material, if there is one.
-    second_sets: Vec<Option<String>>,
+    /// JSON pointers to the textures of materials that use the second set of texture coordinates.
+    second_sets: RefCell<Vec<String>>,
     meshes: Vec<Primitives>,
     /// Default weights of the morph targets of each mesh.
     weights: Vec<Vec<f32>>,
@@ -185,7 +185,7 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
         translucent: Vec::new(),
         colored: Vec::new(),
         needs_tangents: Vec::new(),
-        second_sets: Vec::new(),
+        second_sets: RefCell::default(),
         meshes: Vec::new(),
         weights: Vec::new(),
         skins: Vec::new(),
@@ -217,7 +217,6 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
     };
     model.translucent = of_materials(&alpha);
     model.needs_tangents = of_materials(&material::needs_tangents);
-    model.second_sets = texture::second_sets(&root);
     model.meshes = model.meshes(&root);
     model.weights = match root.get("meshes") {
         Some(meshes) => meshes.items().map(|mesh| mesh.list("weights", |w| w.number().unwrap_or(0.0))).collect(),

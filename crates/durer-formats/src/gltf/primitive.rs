@@ -172,13 +172,19 @@ impl Model<'_> {
     /// Warns if the material of a primitive uses a second set of texture coordinates that the
     /// primitive does not have.
     fn check_second_set(&self, data: &MeshData, material: Option<u32>) {
-        let pointer = material.and_then(|material| self.second_sets.get(material as usize)?.as_ref());
-        if let Some(pointer) = pointer.filter(|_| data.second_uvs.is_empty()) {
+        let Some(material) = material.filter(|_| data.second_uvs.is_empty()) else { return };
+        let (sets, prefix) = (self.second_sets.borrow(), format!("/materials/{material}/"));
+        if let Some(texture) = sets.iter().find(|pointer| pointer.starts_with(&prefix)) {
             let message = match data.uvs.is_empty() {
                 true => "the mesh has no texture coordinates, so the texture is not shown",
                 false => "the mesh has no TEXCOORD_1, so the texture is not shown; TEXCOORD_0 exists",
             };
-            self.report.report(Diagnostic::warning, "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", pointer, message);
+            self.report.report(
+                Diagnostic::warning,
+                "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
+                &format!("{texture}/texCoord"),
+                message,
+            );
         }
     }
 

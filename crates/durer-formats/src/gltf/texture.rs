@@ -8,7 +8,6 @@ use durer_scene::describe::FileName;
 use durer_scene::math::fp;
 use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
-use serde_json::Value;
 
 /// Returns the wrap mode for the `wrapS` or `wrapT` of a sampler.
 fn wrap(at: &JsonRef) -> Option<Wrap> {
@@ -91,6 +90,9 @@ impl Model<'_> {
             at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
         mapping.second = set == 1;
+        if mapping.second {
+            self.second_sets.borrow_mut().push(at.pointer());
+        }
         change(&mut mapping);
         let path = format!("{}#{}{role}", self.input.name, at.pointer());
         self.pictures.borrow_mut().insert(path.clone(), TextureImage { bytes: image, mapping });
@@ -155,24 +157,4 @@ fn transformed(at: &JsonRef) -> [[f32; 3]; 2] {
     let (sin, cos) = fp::sin_cos_degrees(f64::from(angle).to_degrees());
     let (sin, cos) = (sin as f32, cos as f32);
     [[cos * sx, sin * sy, x], [-sin * sx, cos * sy, y]]
-}
-
-/// Returns a JSON pointer to the first `texCoord` of 1 in each material. Textures that Dürer does
-/// not use do not count.
-pub(super) fn second_sets(root: &JsonRef) -> Vec<Option<String>> {
-    let materials = root.value.get("materials").and_then(|materials| materials.as_array());
-    let first = |(i, material)| second_set(material, format!("/materials/{i}"));
-    materials.into_iter().flatten().enumerate().map(first).collect()
-}
-
-fn second_set(value: &Value, pointer: String) -> Option<String> {
-    let fields = value.as_object()?;
-    let own = fields.get("texCoord").filter(|set| set.as_u64() == Some(1)).filter(|_| {
-        // The transform of a texture can choose another set.
-        value.pointer("/extensions/KHR_texture_transform/texCoord").is_none()
-    });
-    let unused = ["occlusionTexture", "thicknessTexture", "clearcoatNormalTexture", "diffuseTransmissionTexture"];
-    let mut inner = fields.iter().filter(|(key, _)| !unused.contains(&key.as_str()));
-    let inner = || inner.find_map(|(key, value)| second_set(value, format!("{pointer}/{key}")));
-    own.map(|_| format!("{pointer}/texCoord")).or_else(inner)
 }
