@@ -52,11 +52,11 @@ impl Numbers<'_> {
         }
     }
 
-    /// Reads a factor that must not be negative.
-    fn factor(&mut self, what: &str) -> Result<f64, Box<Diagnostic>> {
+    /// Reads a factor that must not be negative, and returns it with its start.
+    fn factor(&mut self, what: &str) -> Result<(f64, usize), Box<Diagnostic>> {
         let (number, start) = self.next(what)?;
         match number >= 0.0 {
-            true => Ok(number),
+            true => Ok((number, start)),
             false => Err(self.error(start, self.at, format!("the {what} must not be less than 0"))),
         }
     }
@@ -141,9 +141,8 @@ fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diag
     }
     let (sources, _) = numbers.next("number of light sources")?;
     let (lumens, _) = numbers.next("lumens per light source")?;
-    let before = numbers.at;
-    let multiplier = numbers.factor("multiplier")?;
-    let multiplier_at = before + text[before..].find(|c: char| !c.is_whitespace()).unwrap_or(0)..numbers.at;
+    let (multiplier, start) = numbers.factor("multiplier")?;
+    let multiplier_at = start..numbers.at;
     let verticals = numbers.count("number of vertical angles")?;
     let horizontals = numbers.count("number of horizontal angles")?;
     let (kind, kind_at) = numbers.next("photometric type")?;
@@ -156,7 +155,7 @@ fn parse(text: &str, file: u32) -> Result<(Luminaire, Vec<Diagnostic>), Box<Diag
     for what in ["units", "width", "length", "height"] {
         numbers.next(what)?;
     }
-    let ballast = numbers.factor("ballast factor")?;
+    let (ballast, _) = numbers.factor("ballast factor")?;
     // The standard of 1986 defines this number as a photometric factor. In later standards, this
     // number is reserved and always 1.
     let (reserved, _) = numbers.next("reserved number")?;
