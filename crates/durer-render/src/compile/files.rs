@@ -370,11 +370,12 @@ impl<'r> Loader<'r> {
         let (mut files, mut unread) = (Vec::with_capacity(6), Diagnostics::default());
         let candidates =
             |face: &str| ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
-        let position = |face: &str| candidates(face).iter().position(|c| self.resources.source.contains(c));
+        let position = |face| candidates(face).iter().position(|c| self.resources.source.contains(c));
+        let positions = CubeMap::FACES.map(position);
         // A missing face should have the format of the others.
-        let usual = CubeMap::FACES.into_iter().find_map(position).unwrap_or(0);
-        let path = |face| candidates(face)[position(face).unwrap_or(usual)].clone();
-        for path in CubeMap::FACES.map(path) {
+        let usual = positions.into_iter().find_map(|position| position).unwrap_or(0);
+        for (face, position) in CubeMap::FACES.into_iter().zip(positions) {
+            let path = candidates(face)[position.unwrap_or(usual)].clone();
             let file = FileName { path, span: name.span };
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
