@@ -47,34 +47,41 @@ pub struct FarmArgs {
     pub options: Vec<String>,
 }
 
-/// Options of `durer farm` that can stand between options of `durer render`.
-const OWN: [&str; 6] = ["--output", "--template", "--shards", "--frames", "--fps", "--turntable"];
-
 /// Moves the options of `durer farm` to the front, because everything after the first option of
 /// `durer render` belongs to the latter.
 pub fn own_options_first(words: Vec<OsString>) -> Vec<OsString> {
     if words.get(1).is_none_or(|word| word != "farm") {
         return words;
     }
+    // All options of `durer farm` have a value.
+    let farm = FarmArgs::augment_args(clap::Command::new("farm"));
+    let is_long =
+        |name: &str| name.strip_prefix("--").is_some_and(|name| has(&farm, |arg| arg.get_long() == Some(name)));
+    let is_short = |letter: Option<char>| letter.is_some() && has(&farm, |arg| arg.get_short() == letter);
     let (mut own, mut others) = (Vec::new(), Vec::new());
     let mut rest = words.into_iter();
     let name: Vec<OsString> = rest.by_ref().take(2).collect();
     while let Some(word) = rest.next() {
         let text = word.to_string_lossy().into_owned();
-        let is_joined = text.split_once('=').is_some_and(|(name, _)| OWN.contains(&name));
+        let mut letters = text.strip_prefix('-').unwrap_or_default().chars();
+        let is_short = is_short(letters.next());
         if text == "--" {
             others.push(word);
             others.extend(rest.by_ref());
-        } else if OWN.contains(&&*text) || text == "-o" {
+        } else if is_long(&text) || is_short && letters.as_str().is_empty() {
             own.push(word);
             own.extend(rest.next());
-        } else if is_joined || text.starts_with("-o") && !text.starts_with("--") {
+        } else if is_short || text.split_once('=').is_some_and(|(name, _)| is_long(name)) {
             own.push(word);
         } else {
             others.push(word);
         }
     }
     name.into_iter().chain(own).chain(others).collect()
+}
+
+fn has(command: &clap::Command, is_wanted: impl Fn(&clap::Arg) -> bool) -> bool {
+    command.get_arguments().any(is_wanted)
 }
 
 /// Runs `durer farm` and prints the job file.

@@ -86,6 +86,20 @@ impl FileRegistry {
         }
     }
 
+    /// Registers the output file of the option `what`, whose name must end in `.extension`.
+    pub fn register_output_as(
+        &mut self,
+        what: &'static str,
+        path: &Path,
+        extension: &str,
+    ) -> Result<Destination, Failure> {
+        if !path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension)) {
+            let (format, path) = (extension.to_uppercase(), path.display());
+            return Err(invalid_input(format!("{what} writes {format}: `{path}` must end in .{extension}")));
+        }
+        self.register_output(what, path)
+    }
+
     /// Registers an output file for saved work, which may replace older saved work.
     pub fn register_saved_work(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.register_removal(what, path)?;

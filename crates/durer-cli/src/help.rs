@@ -1,6 +1,7 @@
 //! Arranges the options of commands in `--help`: the common options first, and all of them by topic
 //! with `--help-all`.
 
+use crate::options::name_of;
 use clap::{Arg, ArgAction, Command};
 
 /// Topics of the options that several commands share, in the order of `--help-all`. Options that
@@ -134,13 +135,13 @@ fn arrange_command(command: Command, all: bool) -> Command {
 /// Returns the topic of an option that commands share, and the option's place in the help. An
 /// option is known by its id, because a command can have an option of its own with the same name.
 fn topic(arg: &Arg) -> Option<(&'static str, usize)> {
-    let name = arg.get_long().and(Some(arg.get_id().as_str().replace('_', "-")))?;
+    let name = arg.get_long().and(Some(name_of(arg.get_id())))?;
     let place = |names: &[&str]| names.iter().position(|known| *known == name);
     TOPICS.iter().find_map(|(heading, names)| Some((*heading, place(names)?)))
 }
 
 fn is_common(arg: &Arg) -> bool {
-    COMMON.contains(&arg.get_id().as_str().replace('_', "-").as_str())
+    COMMON.contains(&&*name_of(arg.get_id()))
 }
 
 #[cfg(test)]

@@ -9,10 +9,9 @@ mod printed;
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
-use crate::options::{GivenOptions, IntegratorArgs, SceneArgs};
+use crate::options::{GivenOptions, IntegratorArgs, SceneArgs, name_of};
 use crate::progress::show_progress;
 use crate::report;
-use crate::svg::svg_target;
 use crate::terminal::print_error_line;
 use clap::{Arg, Args};
 use durer::diag::Diagnostic;
@@ -138,7 +137,7 @@ const CAMERA: &[&str] = &["view", "eye", "target", "fov", "camera", "view-file",
 fn of_measure(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "at" => arg.long("moment"),
-        id if CAMERA.contains(&id.replace('_', "-").as_str()) => arg.hide(true),
+        _ if CAMERA.contains(&&*name_of(arg.get_id())) => arg.hide(true),
         _ => arg,
     }
 }
@@ -241,7 +240,7 @@ fn plan_target(args: &MeasureArgs, registry: &mut FileRegistry) -> Result<Option
     if args.grid.len() != 1 {
         return Err(invalid_input("--plan shows one grid: give --grid once"));
     }
-    Ok(Some(svg_target("--plan", path, registry)?))
+    Ok(Some(registry.register_output_as("--plan", path, "svg")?))
 }
 
 /// Prints the name of a file that was written to standard error, because the measured values are on

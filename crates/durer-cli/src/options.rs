@@ -20,7 +20,7 @@ use durer::render::Shard;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-pub use given::GivenOptions;
+pub use given::{GivenOptions, name_of};
 pub use integrator::IntegratorArgs;
 pub use job::{JobArgs, accel, aspect};
 

@@ -7,7 +7,7 @@ use crate::open::{is_stream, load_options, read};
 use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
 use crate::output::{STANDARD_OUTPUT, Target, with_suffix};
 use crate::report::rejected;
-use crate::stats::{self, StageTimer};
+use crate::stats::StageTimer;
 use crate::terminal::{print_error_line, print_line};
 use crate::{check, device, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
@@ -92,7 +92,7 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
             (Some(target), Some(Autosave::new(args, &output, &mut registry)?))
         }
     };
-    let stats_file = args.stats_file().map(|path| stats::target(path, &mut registry)).transpose()?;
+    let stats_file = args.stats_file().map(|path| registry.register_output_as("--stats", path, "json")).transpose()?;
     let mut options = load_options(&args.reading);
     let memory = options.memory;
     let threads = args.work.threads.map(usize::from);

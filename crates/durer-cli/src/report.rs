@@ -128,12 +128,8 @@ fn text(bytes: &[u8]) -> String {
 /// Returns a line of a binary file, which is blank unless it is part of a header of plain text.
 fn text_of_line(line: &[u8]) -> String {
     let is_text = line.iter().all(|b| (b' '..0x7f).contains(b) || b.is_ascii_whitespace());
-    let blank = |&b: &u8| if b == b'\n' { '\n' } else { ' ' };
-    if is_text {
-        line.iter().map(|&b| char::from(b).to_string().replace('\r', " ")).collect()
-    } else {
-        line.iter().map(blank).collect()
-    }
+    let shown = |&b: &u8| if b == b'\n' || is_text && b != b'\r' { char::from(b) } else { ' ' };
+    line.iter().map(shown).collect()
 }
 
 /// View of the files of a diagnostic that shows only the text around its span. This is necessary

@@ -1,24 +1,13 @@
 //! Implements `--stats`, which prints the times and ray counts of a render or writes them as JSON.
 
-use crate::failure::{Failure, from_render_error, invalid_input};
-use crate::file_registry::FileRegistry;
+use crate::failure::{Failure, from_render_error};
 use crate::terminal::print_error_line;
-use durer::image::Destination;
 use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Number of samples that are rendered again for the measurement.
 const SAMPLES: u64 = 4096;
-
-/// Returns the file for the statistics. Fails if its name does not end in .json.
-pub fn target(path: &Path, registry: &mut FileRegistry) -> Result<Destination, Failure> {
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        return Err(invalid_input(format!("--stats writes JSON: `{}` must end in .json", path.display())));
-    }
-    registry.register_output("--stats", path)
-}
 
 /// Stopwatch for the stages of a render, such as reading and rendering.
 pub struct StageTimer {

@@ -1,18 +1,5 @@
 //! Small functions for drawings in SVG.
 
-use crate::failure::{Failure, invalid_input};
-use crate::file_registry::FileRegistry;
-use durer::image::Destination;
-use std::path::Path;
-
-/// Returns the file for a drawing. Fails if its name does not end in .svg.
-pub fn svg_target(option: &'static str, path: &Path, registry: &mut FileRegistry) -> Result<Destination, Failure> {
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        return Err(invalid_input(format!("{option} writes SVG: `{}` must end in .svg", path.display())));
-    }
-    registry.register_output(option, path)
-}
-
 /// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `step`; 1 if `step` is
 /// not positive.
 pub fn round_step(step: f64) -> f64 {

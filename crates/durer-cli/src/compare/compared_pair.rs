@@ -40,7 +40,7 @@ impl ComparedPair {
     /// Returns lines that explain the difference.
     pub fn causes(&self) -> Vec<String> {
         match (&self.outcome, &self.diagnosis) {
-            // What the pictures alone show is still true if the scene does not explain more.
+            // If the scene explains nothing, report what the pictures alone explain.
             (Outcome::Compared(comparison), Some(diagnosis)) if has_only_findings(comparison, diagnosis) => {
                 explained(comparison).into_iter().chain(mistakes::lines(diagnosis)).collect()
             }

@@ -5,7 +5,6 @@ use crate::failure::Failure;
 use crate::file_registry::FileRegistry;
 use crate::output::print_written;
 use crate::report;
-use crate::svg::svg_target;
 use crate::terminal::{print_line, printable_line};
 use durer::diag::{Diagnostics, Files};
 use durer::format::folder::FolderSource;
@@ -28,7 +27,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let (path, name) = (&args.scene, args.scene.display().to_string());
     let mut registry = FileRegistry::default();
     registry.register_input(path)?;
-    let target = args.polar.as_ref().map(|polar| svg_target("--polar", polar, &mut registry)).transpose()?;
+    let target = args.polar.as_ref().map(|polar| registry.register_output_as("--polar", polar, "svg")).transpose()?;
     let bytes = FolderSource::new(".").budget(MAX_BYTES).read_path(path, &name).map_err(report::unreadable)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let file = files.add(name, bytes.clone());

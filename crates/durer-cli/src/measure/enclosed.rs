@@ -21,9 +21,11 @@ pub fn find(world: &World, sensors: &[Sensor], points: &[Measured]) -> Vec<bool>
         .objects()
         .par_iter()
         .filter(|object| {
-            let has_dark = sensors.iter().zip(&is_dark).any(|(sensor, dark)| *dark && contains(object, sensor.point));
-            let has_lit = || sensors.iter().zip(&is_dark).any(|(sensor, dark)| !dark && contains(object, sensor.point));
-            has_dark && !contains(object, camera) && !has_lit()
+            let contains_any = |wanted: bool| {
+                let mut points = sensors.iter().zip(&is_dark).filter(|(_, dark)| **dark == wanted);
+                points.any(|(sensor, _)| contains(object, sensor.point))
+            };
+            contains_any(true) && !contains(object, camera) && !contains_any(false)
         })
         .collect();
     let is_inside = |(sensor, dark): (&Sensor, &bool)| *dark && bodies.iter().any(|body| contains(body, sensor.point));

@@ -2,7 +2,13 @@
 //! apply.
 
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args, Command, FromArgMatches};
+use clap::{ArgMatches, Args, Command, FromArgMatches, Id};
+
+/// Returns the name of an option without dashes. It differs from the option's long name where a
+/// command has renamed a shared option.
+pub fn name_of(id: &Id) -> String {
+    id.as_str().replace('_', "-")
+}
 
 /// Names of the arguments that were given on the command line, without dashes. It must be the first
 /// field of a command, because the parser removes the values of the fields before it.
@@ -28,11 +34,10 @@ impl Args for GivenOptions {
 
 impl FromArgMatches for GivenOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let is_given = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        let is_given = |id: &&Id| matches.value_source(id.as_str()) == Some(ValueSource::CommandLine);
         // Groups have the names of their types.
-        let is_option = |id: &&str| !id.starts_with(char::is_uppercase);
-        let ids = matches.ids().map(clap::Id::as_str).filter(is_option).filter(is_given);
-        Ok(GivenOptions(ids.map(|id| id.replace('_', "-")).collect()))
+        let is_option = |id: &&Id| !id.as_str().starts_with(char::is_uppercase);
+        Ok(GivenOptions(matches.ids().filter(is_option).filter(is_given).map(name_of).collect()))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

@@ -24,9 +24,9 @@ pub(super) fn refuse_for_scene(options: &SceneDefaults, diagnostics: &mut Diagno
         (options.animation_time.is_some(), "--at", "a scene file has no animation; write one file for each frame"),
     ];
     for (_, name, help) in rows.iter().filter(|(is_given, ..)| *is_given) {
-        let (verb, scene) =
-            (if name.contains(' ') { "apply" } else { "applies" }, "not to files in the scene language");
-        diagnostics.push(Diagnostic::error(format!("`{name}` {verb} to models, {scene}")).code(CODE).help(*help));
+        let verb = if name.contains(' ') { "apply" } else { "applies" };
+        let message = format!("`{name}` {verb} to models, not to files in the scene language");
+        diagnostics.push(Diagnostic::error(message).code(CODE).help(*help));
     }
 }
 
