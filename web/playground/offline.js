@@ -7,6 +7,7 @@ const files = [
   "index.html",
   "index.js",
   "index.css",
+  "lecture-page.js",
   "wasm-worker.js",
   "inter-latin-wght-normal.woff2",
   "inter-latin-ext-wght-normal.woff2",

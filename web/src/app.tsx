@@ -1,15 +1,14 @@
+import type { ComponentProps } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { hasServer } from "./engine/connect";
 import type { Engine } from "./engine/engine";
-import { type OwnScene, OwnSceneContext } from "./lecture/context";
-import { Lecture } from "./lecture/lecture";
-import { lesson } from "./lecture/lesson";
-import type { Topic } from "./lecture/topic";
-import { topics } from "./lecture/topics";
+import type { OwnScene } from "./lecture/context";
+import type { LecturePage } from "./lecture/lecture-page";
 import { ThemeButton } from "./ui/theme";
 import { FileMenu } from "./viewer/file-menu";
-import { firstScene, openLink } from "./viewer/link";
+import { firstScene, linkedFiles, openLink } from "./viewer/link";
 import { Store, useStore } from "./viewer/store";
+import { openFiles } from "./viewer/upload";
 import { Viewer } from "./viewer/viewer";
 
 /** Page that the address selects, and its topic. */
@@ -25,14 +24,26 @@ export function App({ engine }: { engine: Engine }) {
   const store = useMemo(() => new Store(engine.session({ shared: true })), [engine]);
   const [at, setAt] = useState<Page>(page);
   const [lost, setLost] = useState<string | null>(null);
-  const [steps, setSteps] = useState<Topic[]>([]);
+  const [refused, setRefused] = useState<string | null>(null);
+  const [lesson, setLesson] = useState<string | null>(null);
   useStore(store);
 
   useEffect(() => {
     engine.onLost(setLost);
-    const follow = () => setAt(page());
+    const linked = () =>
+      openLinked(store).catch((error: unknown) => {
+        setRefused(error instanceof Error ? error.message : String(error));
+        return false;
+      });
+    const follow = () => {
+      setAt(page());
+      setRefused(null);
+      linked();
+    };
     window.addEventListener("hashchange", follow);
-    begin(store).then((text) => setSteps(text === null ? [] : lesson(text)));
+    linked()
+      .then((linked) => begin(store, linked))
+      .then(setLesson);
     return () => window.removeEventListener("hashchange", follow);
   }, [engine, store]);
 
@@ -40,7 +51,7 @@ export function App({ engine }: { engine: Engine }) {
     ["viewer", "Viewer"],
     ["lecture", "Lecture"],
   ];
-  if (steps.length > 0) pages.unshift(["lesson", "Lesson"]);
+  if (lesson?.trim()) pages.unshift(["lesson", "Lesson"]);
   return (
     <div class="app">
       <header class="bar">
@@ -57,21 +68,33 @@ export function App({ engine }: { engine: Engine }) {
         {at.name === "viewer" && <FileMenu store={store} />}
         <ThemeButton />
       </header>
+      {refused && (
+        <p class="notice" role="alert">
+          Cannot open the link: {refused}
+        </p>
+      )}
       {lost && <p class="notice">{lost}. Start it again and reload the page.</p>}
-      {at.name === "viewer" ? (
-        <Viewer store={store} />
-      ) : (
-        <OwnSceneContext.Provider value={own(store)}>
-          <Lecture
-            engine={engine}
-            name={at.name}
-            topics={at.name === "lesson" ? steps : topics}
-            topic={at.topic}
-          />
-        </OwnSceneContext.Provider>
+      {at.name === "viewer" && <Viewer store={store} />}
+      {(at.name === "lecture" || (at.name === "lesson" && lesson !== null)) && (
+        <LazyLecture
+          engine={engine}
+          name={at.name}
+          lesson={at.name === "lesson" ? lesson : null}
+          topic={at.topic}
+          scene={own(store)}
+        />
       )}
     </div>
   );
+}
+
+/** The lecture. Its code is loaded when it is first shown, so that it does not delay the viewer. */
+function LazyLecture(props: ComponentProps<typeof LecturePage>) {
+  const [Page, setPage] = useState<typeof LecturePage | null>(null);
+  useEffect(() => {
+    import("./lecture/lecture-page").then((loaded) => setPage(() => loaded.LecturePage));
+  }, []);
+  return Page && <Page {...props} />;
 }
 
 function FileName({ store }: { store: Store }) {
@@ -89,12 +112,26 @@ function own({ opened, text }: Store): OwnScene {
   return { title: opened.name, name: "", text: null };
 }
 
-/** Opens the scene in the address, or the server's scene. Returns the server's lesson, if any. */
-async function begin(store: Store): Promise<string | null> {
-  const linked = await openLink(location.hash);
+/** Opens the scene that the address contains or names. Returns false if there is none, and throws an error if a file
+ * cannot be fetched.
+ */
+async function openLinked(store: Store): Promise<boolean> {
+  const text = await openLink(location.hash);
+  if (text !== null) {
+    store.open("linked.txt", text);
+    return true;
+  }
+  const paths = linkedFiles(location.hash);
+  if (!paths) return false;
+  await openFiles(store, paths);
+  return true;
+}
+
+/** Opens the server's scene or the first example if the address has none. Returns the server's lesson, if any. */
+async function begin(store: Store, linked: boolean): Promise<string | null> {
   const lesson = hasServer() ? (await store.session.ask({ kind: "lesson" }, "lesson")).text : null;
-  if (linked) store.open("linked.txt", linked);
-  else if (hasServer() && lesson === null) store.open("", null);
+  if (linked) return lesson;
+  if (hasServer() && lesson === null) store.open("", null);
   else store.open("whitted.txt", firstScene);
   return lesson;
 }

@@ -14,10 +14,14 @@ import { App } from "./app";
 import { connect, hasServer } from "./engine/connect";
 import { libraryBuild } from "./engine/level";
 
+const engine = connect();
 const root = document.getElementById("app");
-if (root) render(<App engine={connect()} />, root);
+if (root) render(<App engine={engine} />, root);
 
-// Cache static files, so that the page works offline after the first visit.
+// Cache static files, so that the page works offline after the first visit. Wait for the first
+// picture, so that these files do not delay it.
 if (!hasServer() && "serviceWorker" in navigator && location.protocol.startsWith("http")) {
-  navigator.serviceWorker.register(`./offline.js?level=${libraryBuild()}`).catch(() => {});
+  const cacheFiles = () =>
+    navigator.serviceWorker.register(`./offline.js?level=${libraryBuild()}`).catch(() => {});
+  engine.answered.then(() => setTimeout(cacheFiles, 1000));
 }

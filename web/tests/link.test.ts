@@ -1,5 +1,5 @@
 import { beforeAll, describe, expect, it } from "vitest";
-import { linkOf, openLink } from "../src/viewer/link";
+import { linkedFiles, linkOf, openLink } from "../src/viewer/link";
 
 beforeAll(() => {
   Object.assign(globalThis, { location: { href: "https://example.org/play/#/viewer" } });
@@ -18,5 +18,15 @@ describe("a link", () => {
     expect(await openLink("#/scene/abc$")).toBeNull();
     expect(await openLink("#/scene/AAAA")).toBeNull();
     expect(await openLink("#/lecture")).toBeNull();
+  });
+
+  it("names files, the scene first", () => {
+    expect(linkedFiles("#/open/scenes/shelf.txt,scenes/oak%2C%20old.png")).toEqual([
+      "scenes/shelf.txt",
+      "scenes/oak, old.png",
+    ]);
+    expect(linkedFiles("#/open/scenes/shelf.txt,")).toBeNull();
+    expect(linkedFiles("#/open/%E0%A4%A")).toBeNull();
+    expect(linkedFiles("#/scene/abc")).toBeNull();
   });
 });

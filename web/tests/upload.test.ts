@@ -1,5 +1,6 @@
-import { expect, test } from "vitest";
-import { droppedFiles, plan } from "../src/viewer/upload";
+import { afterEach, expect, test, vi } from "vitest";
+import type { Store } from "../src/viewer/store";
+import { droppedFiles, openFiles, plan } from "../src/viewer/upload";
 
 const file = (name: string) => ({
   isFile: true,
@@ -44,4 +45,47 @@ test("of several scenes, the last one in the fewest folders is opened", async ()
   const uploads = await droppedFiles(items(file("a.txt"), file("b.obj"), folder("parts", file("c.ply"))));
   expect(plan(uploads).main?.path).toBe("b.obj");
   expect(plan([]).main).toBe(null);
+});
+
+afterEach(() => vi.unstubAllGlobals());
+
+/** Records what is given to the session, as name, contents and whether it is opened. */
+function recorder() {
+  const given: [string, string, boolean][] = [];
+  const send = (request: { name: string; base64: string; opens: boolean }) =>
+    given.push([request.name, request.base64, request.opens]);
+  return { given, store: { session: { send } } as unknown as Store };
+}
+
+test("the first file of a link is opened, and the others have names in its folder", async () => {
+  vi.stubGlobal("location", new URL("https://example.org/play/#/open/x"));
+  vi.stubGlobal("fetch", async (url: URL) => new Response(url.pathname));
+  vi.stubGlobal(
+    "FileReader",
+    class {
+      result = "";
+      onload = () => {};
+      async readAsDataURL(file: File) {
+        this.result = `data:,${await file.text()}`;
+        this.onload();
+      }
+    },
+  );
+  const { given, store } = recorder();
+  await openFiles(store, ["scenes/shelf.txt", "scenes/maps/oak.png", "other.ply"]);
+  expect(given).toEqual([
+    ["maps/oak.png", "/play/scenes/maps/oak.png", false],
+    ["other.ply", "/play/other.ply", false],
+    ["shelf.txt", "/play/scenes/shelf.txt", true],
+  ]);
+});
+
+test("a link to another site or to a missing file opens nothing", async () => {
+  vi.stubGlobal("location", new URL("https://example.org/play/"));
+  vi.stubGlobal("fetch", async () => new Response("", { status: 404, statusText: "Not Found" }));
+  const { given, store } = recorder();
+  await expect(openFiles(store, ["https://example.com/a.txt"])).rejects.toThrow("only files of this site");
+  await expect(openFiles(store, ["//example.com/a.txt"])).rejects.toThrow("only files of this site");
+  await expect(openFiles(store, ["a.txt", "b.ply"])).rejects.toThrow("a.txt: 404 Not Found");
+  expect(given).toEqual([]);
 });

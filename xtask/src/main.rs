@@ -19,6 +19,7 @@ mod page;
 mod peers;
 mod prose;
 mod sheet;
+mod site;
 mod soak;
 mod solids;
 mod teach;
@@ -106,6 +107,9 @@ const USAGE: &str = "Commands:
   cargo xtask playground -o FOLDER
       Build the page of `durer live` as static files, over WebAssembly. Needs the target wasm32-unknown-unknown, and
       wasm-bindgen in the version of crates/durer-wasm/Cargo.toml.
+  cargo xtask site -o FOLDER
+      Build the playground, the book (needs mdBook) and the documentation of the library as one web site, in which each
+      scene of the language reference and of the gallery opens in the playground.
   cargo xtask manual [--pages]
       Write the language reference in docs/language with its pictures, and the grammar for editors.
   cargo xtask prose [--count] [PATH ...]
@@ -146,6 +150,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("manual") => manual::run(&arguments[1..]),
         Some("page") => page::run(&arguments[1..]),
         Some("playground") => page::playground(&arguments[1..]),
+        Some("site") => site::run(&arguments[1..]),
         Some("prose") => prose::run(&arguments[1..]),
         _ => {
             println!("{USAGE}");

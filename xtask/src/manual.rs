@@ -52,7 +52,8 @@ fn pictures() -> PathBuf {
     docs().join("language/pictures")
 }
 
-fn picture_name(entry: &Entry) -> String {
+/// Returns the name of the picture of an example.
+pub fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
     // Two entries can have the same keyword in different contexts, for example `Noise`.
     let kind = if entry.doc.contains("which replace the diffuse") { "-color" } else { "" };

@@ -160,7 +160,8 @@ pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn call(command: &mut Command) -> Result<()> {
+/// Runs a program and waits for it.
+pub fn call(command: &mut Command) -> Result<()> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command.status().with_context(|| format!("cannot start `{name}`"))?;
     if !status.success() {

@@ -11,6 +11,7 @@ files![
     "index.html",
     "index.js",
     "index.css",
+    "lecture-page.js",
     "wasm-worker.js",
     "inter-latin-wght-normal.woff2",
     "inter-latin-ext-wght-normal.woff2",
@@ -47,6 +48,17 @@ mod tests {
         assert!(text.contains("durer-server"));
         for part in text.split(['"', '\'']).filter_map(|part| part.strip_prefix("./")) {
             assert!(file(part).is_some(), "{part}");
+        }
+    }
+
+    #[test]
+    fn all_built_files_are_served_and_cached() {
+        let web = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web");
+        let offline = std::fs::read_to_string(web.join("playground/offline.js")).unwrap();
+        for entry in std::fs::read_dir(web.join("dist")).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            assert!(file(&name).is_some(), "{name}");
+            assert!(offline.contains(&format!("\"{name}\"")), "{name}");
         }
     }
 

@@ -30,6 +30,8 @@ interface PendingRequest {
 /** Connection to the ray tracer, native or WebAssembly, that all sessions of the page share. */
 export class Engine {
   readonly name: string;
+  /** Resolves when the engine has answered for the first time. */
+  readonly answered: Promise<void>;
   #transport: Transport;
   #sessions = new Map<number, Session>();
   #next = 1;
@@ -37,8 +39,15 @@ export class Engine {
 
   constructor(name: string, connect: (events: TransportEvents) => Transport) {
     this.name = name;
+    let answered = () => {};
+    this.answered = new Promise((resolve) => {
+      answered = resolve;
+    });
     this.#transport = connect({
-      message: (buffer) => this.#receive(buffer),
+      message: (buffer) => {
+        answered();
+        this.#receive(buffer);
+      },
       closed: (why) => {
         for (const session of this.#sessions.values()) session.fail(why);
         for (const callback of this.#lost) callback(why);

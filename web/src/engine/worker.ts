@@ -1,17 +1,12 @@
 import type { Request, RequestMessage } from "../protocol";
 import type { Transport, TransportEvents } from "./engine";
+import { type FromWorker, helperName, type PartsPort } from "./worker-messages";
 
 /** Maximum number of workers that share a picture. Each one holds the scene in its own memory. */
 const maxWorkers = 8;
 
-/** Message that connects two workers: a helper sends the parts that it renders to the first one. */
-export interface PartsPort {
-  role: "first" | "helper";
-  port: MessagePort;
-}
-
-function start(): Worker {
-  return new Worker(new URL("./wasm-worker.ts", import.meta.url), { type: "module", name: "durer" });
+function start(name: string): Worker {
+  return new Worker(new URL("./wasm-worker.ts", import.meta.url), { type: "module", name });
 }
 
 /**
@@ -19,12 +14,17 @@ function start(): Worker {
  * The pictures of shared sessions are divided among it and helpers, which receive the same requests.
  */
 export function worker(events: TransportEvents): Transport {
-  const first = start();
+  const first = start("durer");
   const shared = new Set<number>();
   let helpers: Worker[] = [];
-  first.onmessage = ({ data }: MessageEvent<ArrayBuffer | string>) => {
+  let library: WebAssembly.Module | null = null;
+  first.onmessage = ({ data }: MessageEvent<FromWorker>) => {
     if (typeof data === "string") events.closed(data);
-    else events.message(data);
+    else if (data instanceof ArrayBuffer) events.message(data);
+    else {
+      for (const helper of helpers) join(helper, data);
+      library = data;
+    }
   };
   first.onerror = (error) => events.closed(error.message || "the worker has stopped");
 
@@ -38,15 +38,19 @@ export function worker(events: TransportEvents): Transport {
     for (const session of shared) tell(first, session, { kind: "share", index: 1, count: 1 });
     shared.clear();
   };
-  const startHelper = () => {
-    const helper = start();
+  /** Lets a helper start, which keeps the messages that it received before. */
+  const join = (helper: Worker, library: WebAssembly.Module) => {
     const { port1, port2 } = new MessageChannel();
-    helper.postMessage({ role: "helper", port: port1 } satisfies PartsPort, [port1]);
+    helper.postMessage({ role: "helper", port: port1, library } satisfies PartsPort, [port1]);
     first.postMessage({ role: "first", port: port2 } satisfies PartsPort, [port2]);
+  };
+  const startHelper = () => {
+    const helper = start(helperName);
     // A helper posts a message only if it cannot load the library.
     helper.onmessage = stopHelpers;
     helper.onerror = stopHelpers;
     helpers.push(helper);
+    if (library) join(helper, library);
   };
   return {
     share(session) {

@@ -4,6 +4,7 @@ import whitted from "../../../scenes/whitted.txt?raw";
 export const firstScene: string = whitted;
 
 const mark = "#/scene/";
+const filesMark = "#/open/";
 
 /** Returns a link that contains the entire scene, compressed, in the URL's fragment, which servers never receive.
  */
@@ -24,6 +25,19 @@ export async function openLink(hash: string): Promise<string | null> {
     const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
     return await new Response(stream).text();
+  } catch {
+    return null;
+  }
+}
+
+/** Returns the paths in a link such as `#/open/scenes/shelf.txt,scenes/wood.png`: the scene, then the files that
+ * it refers to. Returns `null` for other links.
+ */
+export function linkedFiles(hash: string): string[] | null {
+  if (!hash.startsWith(filesMark)) return null;
+  try {
+    const paths = hash.slice(filesMark.length).split(",").map(decodeURIComponent);
+    return paths.every((path) => path !== "") ? paths : null;
   } catch {
     return null;
   }

@@ -14,6 +14,26 @@ await test("a link holds the scene", wide, async (page) => {
   await page.waitForFunction((wanted) => document.querySelector(".cm-content")?.textContent === wanted, text);
 });
 
+await test("a link names files of the site, and of no other", wide, async (page) => {
+  const scene =
+    "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\nGroup { TriangleMesh { obj_file meshes/cube.obj } }\n";
+  await page.route("**/site/cube.txt", (route) => route.fulfill({ body: scene }));
+  await page.route("**/site/meshes/cube.obj", (route) => route.fulfill({ path: `${scenes}meshes/cube.obj` }));
+  await open(page, "#/open/site/cube.txt,site/meshes/cube.obj");
+  await page.waitForFunction(() => document.querySelector(".file")?.textContent?.startsWith("cube.txt"));
+  await shown(page);
+  const findings = (await page.locator(".findings li").allTextContents()).join("\n");
+  if (findings.includes("cube.obj")) throw new Error(findings);
+  // Another link is opened in the same page.
+  await page.evaluate(() => {
+    location.hash = "#/open/https://example.com/gone.txt";
+  });
+  const notice = await page.getByRole("alert").textContent();
+  if (!notice?.includes("https://example.com/gone.txt: only files of this site"))
+    throw new Error(`${notice}`);
+  if (!(await page.locator(".file").textContent())?.startsWith("cube.txt")) throw new Error("another scene");
+});
+
 await test("an example, a term, its line and its numbers", wide, async (page) => {
   await open(page);
   await shown(page);
