@@ -6,7 +6,7 @@ use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::job::job;
 use crate::open::{CompiledInput, load_options, open};
-use crate::options::{JobArgs, SceneArgs, ViewArgs, accel, aspect};
+use crate::options::{JobArgs, SceneArgs, ViewArgs, accel};
 use crate::terminal::print_line;
 use crate::values::{percent, pixel};
 use crate::{output, progress};
@@ -104,7 +104,7 @@ pub fn split_ray_argument(words: Vec<OsString>) -> Vec<OsString> {
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     options.accel = accel(&args.job)?;
-    options.scene_defaults.aspect = aspect(&args.job);
+    args.job.options.adapt(&mut options.scene_defaults);
     let mut registry = FileRegistry::default();
     let page_file = args.html.as_ref().map(|path| registry.register_output("--html", path)).transpose()?;
     let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;

@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, Command};
 /// Topics of the options that several commands share, in the order of `--help-all`. Options that
 /// are not listed belong to a single command; its help shows them first.
 const TOPICS: &[(&str, &[&str])] = &[
-    ("Picture", &["size", "crop", "show", "zoom", "depth-range", "light-range", "light-log"]),
+    ("Picture", &["size", "crop", "show", "zoom", "background", "depth-range", "light-range", "light-log"]),
     ("Camera", &["view", "eye", "target", "fov", "camera", "view-file", "fit", "turned"]),
     ("Model", &["up", "studio", "environment", "variant", "at"]),
     ("Reading", &["dialect", "compat", "strict", "assets", "allow-outside", "memory"]),
@@ -72,6 +72,7 @@ const COMMON: &[&str] = &[
     "noise-threshold",
     "exposure",
     "tone",
+    "background",
     "denoise",
     "time-limit",
     "resume",

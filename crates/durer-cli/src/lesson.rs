@@ -9,7 +9,7 @@ use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::job::{job, warn};
 use crate::open::{load_options, open};
-use crate::options::{GivenOptions, JobArgs, SceneArgs, accel, aspect};
+use crate::options::{GivenOptions, JobArgs, SceneArgs, accel};
 use crate::output::with_suffix;
 use crate::progress;
 use crate::terminal::print_line;
@@ -83,7 +83,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let folder = Folder::new(args.output.clone().unwrap_or_else(|| with_suffix(stem, "-lesson")), &mut registry)?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
-    options.scene_defaults.aspect = aspect(&args.job);
+    args.job.options.adapt(&mut options.scene_defaults);
     let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
     let mut job = job(&args.job, None, &compiled.loaded, false)?;
     if args.job.options.requested_size().is_none() {

@@ -22,7 +22,7 @@ use std::time::Duration;
 
 pub use given::{GivenOptions, name_of};
 pub use integrator::IntegratorArgs;
-pub use job::{JobArgs, accel, aspect};
+pub use job::{JobArgs, accel};
 
 /// Options for reading a scene
 #[derive(Args)]

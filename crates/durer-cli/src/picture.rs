@@ -4,7 +4,7 @@ use crate::autosave::Autosave;
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
 use crate::open::{is_stream, load_options, read};
-use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
+use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel};
 use crate::output::{STANDARD_OUTPUT, Target, with_suffix};
 use crate::report::rejected;
 use crate::stats::StageTimer;
@@ -13,7 +13,8 @@ use crate::{check, device, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
 use durer::render::{
-    BandedRender, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard, ShardBy, replay,
+    Backdrop, BandedRender, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard,
+    ShardBy, replay,
 };
 use durer::world::World;
 use std::path::{Path, PathBuf};
@@ -97,12 +98,20 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
     let memory = options.memory;
     let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (accel(&args.job)?, threads);
-    options.scene_defaults.aspect = aspect(&args.job);
+    args.job.options.adapt(&mut options.scene_defaults);
     options.cache = watched.cache.clone();
     let mut stages = StageTimer::start();
     let scene = read(&args.scene, &options, args.quiet, &mut registry)?;
     stages.end_stage("reading");
     let mut job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
+    if let Some(target) = &target
+        && job.backdrop == Some(Backdrop::Transparent)
+        && !target.format().has_alpha
+    {
+        let message =
+            format!("{} files cannot be transparent: write a PNG, WebP, TGA or EXR file", target.format().name);
+        return Err(invalid_input(message));
+    }
     let window = job.window();
     let mut needed = PartialRender::bytes_needed(&job, shard);
     let bands = match &target {

@@ -103,6 +103,7 @@ impl SceneDefaultsArgs {
             fit: self.fit,
             orbit_degrees: self.turned,
             convert_only: false,
+            no_ground: false,
             own_light: false,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),

@@ -68,6 +68,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         let mut options = load_options(&args.reading);
         options.accel = accel;
         let (width, height) = args.job.options.requested_size().unwrap_or(SIZE);
+        args.job.options.adapt(&mut options.scene_defaults);
         options.scene_defaults.aspect = Some(width as f32 / height as f32);
         // Diagnostics are printed only for the first acceleration structure.
         let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut FileRegistry::default())?;

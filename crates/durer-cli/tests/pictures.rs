@@ -61,6 +61,30 @@ fn threads_and_accelerators_change_no_bit() {
 }
 
 #[test]
+fn background_is_transparent_or_a_color() {
+    let folder = TestFolder::new();
+    folder.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    let render = "render ball.obj --size 40x30 --samples 4 --view front --background";
+    folder.expect_exit(0, &format!("{render} transparent -o open.png"));
+    let picture = folder.image8("open.png");
+    // The model has no ground, and edges are partly covered.
+    assert_eq!((picture.alpha[0], picture.alpha[15 * 40 + 20], picture.alpha[29 * 40]), (0, 255, 0));
+    assert!(picture.alpha.iter().any(|alpha| (1..255).contains(alpha)));
+    folder.expect_exit(0, &format!("{render} 0,0.25,1 -o blue.pfm"));
+    let blue = folder.image("blue.pfm");
+    assert_eq!(blue.get(0, 0).unwrap().to_array(), [0.0, 0.25, 1.0]);
+    let refused = folder.expect_exit(2, &format!("{render} transparent -o open.jpg"));
+    assert!(refused.err.contains("JPEG files cannot be transparent: write a PNG"), "{}", refused.err);
+    for wrong in ["1,1", "-1,0,0", "white", "nan,0,0"] {
+        let refused = folder.expect_exit(2, &format!("{render}={wrong} -o open.png"));
+        assert!(refused.err.contains("`transparent`, or red, green and blue"), "{}", refused.err);
+    }
+    folder.write("fog.txt", format!("{SCENE}\nFog {{ extinction 0.1 }}"));
+    let refused = folder.expect_exit(2, "render fog.txt --dialect durer --background 1,1,1 -o fog.png");
+    assert!(refused.err.contains("fog in front of it"), "{}", refused.err);
+}
+
+#[test]
 fn seed_changes_random_pictures_only() {
     let folder = TestFolder::new();
     for sampling in SAMPLINGS {

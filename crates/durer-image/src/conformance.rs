@@ -84,6 +84,12 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
         assert_eq!(back.pixels[1], Vec3::ZERO, "{}", format.name);
+        let opacity = match format.decode(&out) {
+            Ok(Raster::Eight(picture)) => picture.alpha.first().map(|&alpha| f32::from(alpha) / 255.0),
+            Ok(Raster::Sixteen(_, alpha) | Raster::Float(_, alpha)) => alpha.first().copied(),
+            Err(error) => panic!("{}: {error}", format.name),
+        };
+        assert_eq!(opacity.map(|opacity| (opacity - 0.5).abs() < 0.002), format.has_alpha.then_some(true));
         // The number of coverage values must match the number of pixels.
         let odd = Layer { coverage: Some(vec![0.5]), ..layer.clone() };
         assert!(format.write(&[odd], &WriteOptions::default(), &mut Vec::new()).is_err());

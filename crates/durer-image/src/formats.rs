@@ -125,6 +125,9 @@ pub struct Format {
     pub depth: Depth,
     /// True if a file can contain several layers.
     pub supports_layers: bool,
+    /// True if files that are written store the coverage of pixels. Other formats store pixels
+    /// without coverage as black.
+    pub has_alpha: bool,
     /// Maximum width and height in pixels.
     pub max_side: u32,
     /// Returns true if the bytes begin with the format's signature.

@@ -5,7 +5,7 @@ use super::views;
 use crate::failure::Failure;
 use crate::job::job;
 use crate::open::load_options;
-use crate::options::{accel, aspect};
+use crate::options::accel;
 use durer::check::{CheckInput, Finding, check, reader_findings};
 use durer::diag::{Diagnostics, Files};
 use durer::load_text;
@@ -38,7 +38,7 @@ pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Che
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);
     options.accel = accel(&args.job)?;
-    options.scene_defaults.aspect = aspect(&args.job);
+    args.job.options.adapt(&mut options.scene_defaults);
     let loaded = load_text(path, bytes, &options, &mut files, &mut diagnostics);
     let dialect = loaded.as_ref().map(|loaded| loaded.dialect.name());
     let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));

@@ -118,8 +118,3 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
         _ => AccelKind::Bvh,
     })
 }
-
-/// Returns the requested aspect ratio, which is width divided by height.
-pub fn aspect(args: &JobArgs) -> Option<f32> {
-    args.options.requested_size().map(|(width, height)| width as f32 / height.max(1) as f32)
-}

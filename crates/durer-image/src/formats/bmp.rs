@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     extensions: &["bmp"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(b"BM"),
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Bmp, bytes)?)),

@@ -30,6 +30,7 @@ pub const FORMAT: Format = Format {
     extensions: &["exr"],
     depth: Depth::Float,
     supports_layers: true,
+    has_alpha: true,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(&MAGIC),
     head,

@@ -14,6 +14,7 @@ pub const FORMAT: Format = Format {
     extensions: &["hdr"],
     depth: Depth::Float,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
     head: |bytes| Ok(codec::head(&decoder(bytes)?)),

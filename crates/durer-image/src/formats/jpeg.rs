@@ -60,6 +60,7 @@ pub const FORMAT: Format = Format {
     extensions: &["jpg", "jpeg"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: false,
     max_side: 65535,
     has_signature: |bytes| bytes.starts_with(b"\xff\xd8\xff"),
     head: |bytes| {

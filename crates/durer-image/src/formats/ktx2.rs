@@ -16,6 +16,7 @@ pub const FORMAT: Format = Format {
     extensions: &["ktx2"],
     depth: Depth::Float,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(MARK),
     head,

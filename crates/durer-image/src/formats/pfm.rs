@@ -12,6 +12,7 @@ pub const FORMAT: Format = Format {
     extensions: &["pfm"],
     depth: Depth::Float,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
     head,

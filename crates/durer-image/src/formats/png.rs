@@ -17,6 +17,7 @@ pub const FORMAT: Format = Format {
     extensions: &["png"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: true,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(MARK),
     head,

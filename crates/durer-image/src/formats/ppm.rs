@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     extensions: &["ppm", "pnm"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
     // The decoder scales samples so that the maximum value of the file becomes 255, or 65535 if

@@ -11,6 +11,7 @@ pub const FORMAT: Format = Format {
     extensions: &["tga"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: true,
     max_side: 65535,
     // The format has no signature, so it is recognised only by its extension.
     has_signature: |_| false,

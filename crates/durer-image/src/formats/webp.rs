@@ -11,6 +11,7 @@ pub const FORMAT: Format = Format {
     extensions: &["webp"],
     depth: Depth::EightBit,
     supports_layers: false,
+    has_alpha: true,
     max_side: 16384,
     has_signature: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
     head: |bytes| {

@@ -20,7 +20,7 @@ pub(super) struct PixelSample {
     /// Weight of the sample in the pixel.
     pub(super) weight: f32,
     /// Camera ray, or `None` if the camera has no ray there, for example outside the circle of a
-    /// fisheye lens.
+    /// fisheye lens, or if the ray hits nothing and the job replaces the background.
     pub(super) ray: Option<Ray>,
 }
 
@@ -165,7 +165,13 @@ impl<'a> CameraRays<'a> {
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(film_position), pixel: pixel.point, lens };
-        PixelSample { film_position, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
+        let ray = self.world.camera().ray(self.world.camera_frame(), &at);
+        PixelSample { film_position, lens, weight, ray: self.without_misses(ray) }
+    }
+
+    /// Removes a ray that hits nothing if the job replaces the background.
+    fn without_misses(&self, ray: Option<Ray>) -> Option<Ray> {
+        ray.filter(|ray| self.job.backdrop.is_none() || self.world.occluded(ray, &mut ()))
     }
 
     /// Generates the rays and weights of a group of samples. The results are the same as those of
@@ -173,7 +179,7 @@ impl<'a> CameraRays<'a> {
     pub(super) fn sample_group(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
-                take(i, ray, weight);
+                take(i, self.without_misses(ray), weight);
             }
         };
         match (&self.filter_sampler, self.job.sampling) {
@@ -215,14 +221,14 @@ impl<'a> CameraRays<'a> {
     ) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (film_position, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
-        let ray = camera_ray(self.world, &self.raster, (x, y), film_position, lens);
+        let ray = self.without_misses(camera_ray(self.world, &self.raster, (x, y), film_position, lens));
         (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
     /// Generates the sample of a sub-pixel for the 2012 course.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
-        let ray = camera_ray(self.world, raster, (x, y), place, lens);
+        let ray = self.without_misses(camera_ray(self.world, raster, (x, y), place, lens));
         PixelSample { film_position: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 

@@ -77,8 +77,19 @@ pub struct ExplainedSample {
     pub lens: Vec2,
     /// Weight of the sample in the explained pixel. The weights are not normalized.
     pub weight: f32,
-    /// Trace of the sample's light. It is `null` in JSON if the camera has no ray there.
+    /// Trace of the sample's light. It is `null` in JSON if the camera has no ray there, or if the
+    /// ray hits nothing and the job replaces the background.
     pub light: Option<Tree>,
+    /// Colour of the sample if the job replaces the background by a colour and `light` is `null`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub backdrop: Option<Color>,
+}
+
+impl ExplainedSample {
+    /// Returns the colour of the sample, or `None` if it is transparent.
+    fn color(&self) -> Option<Color> {
+        self.light.as_ref().map(Tree::sum).or(self.backdrop)
+    }
 }
 
 impl Explanation {
@@ -86,8 +97,10 @@ impl Explanation {
     /// render.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
-        let light =
-            |s: &ExplainedSample| s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
+        let light = |s: &ExplainedSample| match (&s.light, self.stale_texels) {
+            (Some(light), Some(stale)) => Some(light.sum() + stale),
+            _ => s.color(),
+        };
         if self.mean == SampleCombination::Own {
             for s in &self.samples {
                 film.add_optional(self.x, self.y, s.sample, light(s), s.weight);
@@ -141,6 +154,7 @@ pub fn explain_samples(
     samples: Option<u32>,
 ) -> Result<Explanation, RenderError> {
     job.validate()?;
+    job.check_world(world)?;
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
@@ -150,7 +164,8 @@ pub fn explain_samples(
     let account = |of, sample, aim: PixelSample| {
         let id = SampleId::new(job.seed, of, sample);
         let light = aim.ray.and_then(|ray| trace_tree(&integrator, &ray, id));
-        ExplainedSample { of, sample, place: aim.film_position, lens: aim.lens, weight: aim.weight, light }
+        let backdrop = if light.is_none() { job.missed_color() } else { None };
+        ExplainedSample { of, sample, place: aim.film_position, lens: aim.lens, weight: aim.weight, light, backdrop }
     };
     let (mean, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
@@ -190,12 +205,12 @@ fn error(world: &World, job: &Job, source: &SampleSource, explanation: &Explanat
         samples.iter().for_each(|s| film.add_optional(x, y, s.sample, color(s), s.weight));
         film
     };
-    let own = film(&|s| s.light.as_ref().map(Tree::sum));
+    let own = film(&ExplainedSample::color);
     let twin = bias_corrected(job.method).map(|method| {
         let integrator = Job { method, ..job.clone() }.integrator(world, None);
-        film(&|s| {
-            let ray = source.aim(x, y, s.sample).ray?;
-            Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ()))
+        film(&|s| match source.aim(x, y, s.sample).ray {
+            Some(ray) => Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ())),
+            None => s.backdrop,
         })
     });
     let sums = |film| PixelStatistics { pixel: Some((film, x, y)), gain: source.gain(), lumens: None };

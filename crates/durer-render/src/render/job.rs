@@ -12,6 +12,7 @@ use crate::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSet
 use crate::world::World;
 use durer_scene::camera::RayCone;
 use durer_scene::describe::DescribedKind;
+use durer_scene::math::Color;
 use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
@@ -120,6 +121,20 @@ pub struct Job {
     /// picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<FalseColorScale>,
+    /// What the colour picture shows where camera rays hit nothing; `None` for the light of the
+    /// scene's background.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub backdrop: Option<Backdrop>,
+}
+
+/// Replacement for the background in the colour picture. Only camera rays see it: the light of the
+/// background, its reflections and what is seen through glass remain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Backdrop {
+    /// The picture is transparent where camera rays hit nothing.
+    Transparent,
+    /// A colour, as linear light from 0.
+    Color(Color),
 }
 
 /// Serializes AOVs by their names.
@@ -162,6 +177,7 @@ impl Default for Job {
             aovs: Vec::new(),
             depth_range: None,
             light_scale: None,
+            backdrop: None,
         }
     }
 }
@@ -239,6 +255,23 @@ impl Job {
                 return refuse(format!("false colours cannot range from {low} to {high}"));
             }
         }
+        if let Some(color) = self.missed_color()
+            && !(color.is_finite() && color.min_element() >= 0.0)
+        {
+            return refuse(format!("the background's colour {color} must not be less than 0"));
+        }
+        if self.missed_color().is_some() && !self.sampling.is_local() {
+            return refuse("the filters of the course do not support a background colour".into());
+        }
+        Ok(())
+    }
+
+    /// Checks that the job can render a world.
+    pub(super) fn check_world(&self, world: &World) -> Result<(), RenderError> {
+        if self.backdrop.is_some() && world.fog().is_some() {
+            let message = "the background cannot be replaced, because the scene has fog in front of it";
+            return Err(RenderError::Job(message.into()));
+        }
         Ok(())
     }
 
@@ -250,6 +283,14 @@ impl Job {
     /// Returns the rectangle of the full picture.
     pub fn whole(&self) -> PixelRect {
         PixelRect { left: 0, top: 0, width: self.width, height: self.height }
+    }
+
+    /// Returns the colour of samples without a camera ray, or `None` if they are transparent.
+    pub fn missed_color(&self) -> Option<Color> {
+        match self.backdrop {
+            Some(Backdrop::Color(color)) => Some(color),
+            Some(Backdrop::Transparent) | None => None,
+        }
     }
 
     /// Returns the names of the job's pictures, in order.

@@ -3,6 +3,8 @@
 mod adaptive;
 mod aim;
 mod allocation;
+#[cfg(test)]
+mod backdrop_tests;
 mod bands;
 mod blocks;
 mod camera_rays;
@@ -45,7 +47,7 @@ pub use crop::PixelRect;
 pub use denoised::NoisyPicture;
 pub use error::{Panicked, RenderError};
 pub use grid::grid_picture;
-pub use job::{Job, Sampling};
+pub use job::{Backdrop, Job, Sampling};
 pub use merge::{MergeError, merge};
 pub use part::{PartialRender, Statistics};
 pub use pictures::Rendered;

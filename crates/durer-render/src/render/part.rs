@@ -139,6 +139,7 @@ impl PartialRender {
     /// [`RenderError::NoMemory`]. Returns [`RenderError::Shard`] or [`RenderError::Adaptive`] if
     /// the job cannot be divided or sampled in this way.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
+        job.check_world(world)?;
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 

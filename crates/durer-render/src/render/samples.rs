@@ -257,7 +257,7 @@ impl<'a> SampleSource<'a> {
             let mut traced = of.iter().zip(&*colors).peekable();
             for (sample, &weight) in (run.first..).zip(weights) {
                 let color = traced.next_if(|((_, seen), _)| *seen == sample).map(|(_, &color)| color);
-                film.add_optional(run.x, run.y, sample, color, weight);
+                film.add_optional(run.x, run.y, sample, color.or(self.job.missed_color()), weight);
             }
         }
         buffer.clear();
@@ -265,12 +265,12 @@ impl<'a> SampleSource<'a> {
     }
 
     /// Takes one sample of a pixel. Returns its weight and its colour. The colour is `None` if the
-    /// camera has no ray there.
+    /// camera has no ray there and the job has no colour for such samples.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.with_sample(sample), rays));
-        (color.map(|color| self.with_stale((x, y), color)), weight)
+        (color.map(|color| self.with_stale((x, y), color)).or(self.job.missed_color()), weight)
     }
 
     /// Adds the contribution of the quirk in [`stale`] to a colour.

@@ -83,6 +83,8 @@ pub struct SceneDefaults {
     /// True to neither add nor replace anything, because the scene is being converted to another
     /// format.
     pub convert_only: bool,
+    /// True to add no ground below the model.
+    pub no_ground: bool,
     /// True to use only the model's own light, even if it has none.
     pub own_light: bool,
     /// Ratio of width to height of the picture that the camera should fill, or `None` for 1.
@@ -242,7 +244,7 @@ impl SceneDefaults {
         scene.lights = Some(lights);
         scene.background.color = sky;
         scene.background.ambient_light = ambient;
-        if framed {
+        if framed && !self.no_ground {
             let mut lowest = f64::INFINITY;
             points(scene, &mut |p| lowest = lowest.min(p.dot(sides.up)));
             let material = PrincipledMaterial {

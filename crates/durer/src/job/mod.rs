@@ -12,12 +12,12 @@ use durer_render::film::aov::Aov;
 use durer_render::film::course::CourseFilter;
 use durer_render::film::false_color::FalseColorScale;
 use durer_render::integrator::{IntegratorKind, RenderSettings};
-use durer_render::render::{Job, PixelRect, Sampling};
+use durer_render::render::{Backdrop, Job, PixelRect, Sampling};
 use durer_scene::camera::{Projection, Raster};
 use durer_scene::describe::{DescribedKind, Field, Value};
 use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::sampler::Sampler;
-use durer_scene::scene::Scene;
+use durer_scene::scene::{Scene, SceneDefaults};
 pub(crate) use option_form::unknown_option;
 pub use option_form::{JobOption, OptionForm};
 use option_form::{OptionValue, one_of};
@@ -152,10 +152,18 @@ options! {
         /// Take more samples in noisy pixels and fewer in others: a quarter of --samples measures
         /// the noise, and the rest are distributed accordingly
         adaptive: bool = "adaptive", OptionForm::Flag;
+        /// What the camera sees where it sees no object: `transparent`, or a colour as linear light,
+        /// for example 1,1,1 for white. Lighting, reflections and refractions do not change. A model
+        /// without a camera then gets no ground [default: the background of the scene]
+        background: Background = "background", OptionForm::Value("transparent|R,G,B");
         /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");
     }
 }
+
+/// Value of the option `background`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Background(pub Backdrop);
 
 /// Returns the default integrator of a scene. This is path tracing for layered materials,
 /// environments, fog and emissive surfaces, and Whitted's integrator otherwise.
@@ -283,6 +291,13 @@ impl RenderJob {
         Ok(method)
     }
 
+    /// Adapts the defaults of models to these options: the camera fits the aspect ratio of the
+    /// picture, and a replaced background needs no ground.
+    pub fn adapt(&self, defaults: &mut SceneDefaults) {
+        defaults.aspect = self.size.map(|(width, height)| width as f32 / height.max(1) as f32);
+        defaults.no_ground = self.background.is_some();
+    }
+
     /// Returns the size of the picture if it is set.
     pub fn requested_size(&self) -> Option<(u32, u32)> {
         self.size
@@ -356,6 +371,7 @@ impl RenderJob {
             aovs: pictures.iter().filter_map(|name| Aov::from_name(name)).collect(),
             depth_range,
             light_scale,
+            backdrop: self.background.map(|Background(backdrop)| backdrop),
         })
     }
 
@@ -450,6 +466,7 @@ impl RenderJob {
                 .filter(|&least| least != if emulates { 0.0 } else { MIN_THROUGHPUT }),
             noise_threshold: job.noise,
             adaptive: unless(job.adaptive, false),
+            background: job.backdrop.map(Background),
             seed: Some(job.seed).filter(|&seed| seed != 0),
             ..RenderJob::default()
         };

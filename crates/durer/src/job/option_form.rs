@@ -1,6 +1,9 @@
 //! Forms of option values, which define how their text is checked, parsed and printed.
 
+use super::Background;
 use durer_diag::did_you_mean;
+use durer_render::render::Backdrop;
+use durer_scene::math::Color;
 
 /// Form of the value of an option, such as a flag, a number in a range, or one of several words.
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +111,26 @@ impl OptionValue for (u32, u32) {
     }
     fn to_text(&self) -> String {
         format!("{}x{}", self.0, self.1)
+    }
+}
+
+/// What a picture shows where nothing is hit.
+impl OptionValue for Background {
+    fn parse(text: &str) -> Result<Self, String> {
+        if text == "transparent" {
+            return Ok(Background(Backdrop::Transparent));
+        }
+        let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        let color: Option<[f32; 3]> = numbers.and_then(|numbers| numbers.try_into().ok());
+        let color = color.map(Color::from).filter(|color| color.is_finite() && color.min_element() >= 0.0);
+        let color = color.ok_or("expected `transparent`, or red, green and blue from 0, for example 1,1,1")?;
+        Ok(Background(Backdrop::Color(color)))
+    }
+    fn to_text(&self) -> String {
+        match self.0 {
+            Backdrop::Transparent => "transparent".into(),
+            Backdrop::Color(color) => format!("{},{},{}", color.x, color.y, color.z),
+        }
     }
 }
 

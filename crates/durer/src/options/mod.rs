@@ -93,8 +93,7 @@ impl RenderOptions {
         let mut load = self.load.clone();
         load.threads = self.threads;
         load.memory = self.memory.bytes();
-        load.scene_defaults.aspect =
-            self.job.requested_size().map(|(width, height)| width as f32 / height.max(1) as f32);
+        self.job.adapt(&mut load.scene_defaults);
         load
     }
 

@@ -270,8 +270,12 @@ fn sample_lines(
     tree_options: Option<&ExplainOptions>,
     lines: &mut Vec<TextLine>,
 ) {
-    let ExplainedSample { place, weight, light, .. } = sample;
-    let color_text = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
+    let ExplainedSample { place, weight, light, backdrop, .. } = sample;
+    let color_text = match (light, backdrop) {
+        (Some(light), _) => rgb(light.sum()),
+        (None, Some(backdrop)) => format!("{}, the background's colour, because nothing is hit here", rgb(*backdrop)),
+        (None, None) => "the camera sees nothing here".into(),
+    };
     let text = format!("{name} at {}, {}, weight {}: {color_text}", place.x, place.y, number(*weight));
     lines.push(TextLine::plain(1, text));
     if let (Some(light), Some(options)) = (light, tree_options) {

@@ -193,7 +193,7 @@ impl Work<'_> {
         let mut open = OpenBlock::new(self.part, plan.index, plan.block, end);
         let mut colors = results.iter().map(|result| result.color);
         for (x, y, sample, weight, has_ray) in plan.samples {
-            let color = if has_ray { colors.next() } else { None };
+            let color = if has_ray { colors.next() } else { self.part.job.missed_color() };
             open.film.add_optional(x, y, sample, color, weight);
         }
         open.finish(self.part, results.iter().map(|result| u64::from(result.rays)).sum())
