@@ -1,6 +1,7 @@
 //! Implements `durer measure`, which computes illuminance and irradiance at points.
 
 mod enclosed;
+mod glare;
 mod grid;
 mod plan;
 mod point_list;
@@ -40,6 +41,7 @@ use std::path::PathBuf;
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 --error 1% --plan desk.svg --json
   durer measure room.txt --points places.csv
   durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
+  durer measure office.txt --ugr 2,1.2,0:2,1.2,6 --json
 
 A grid is given by a corner, two edges that start at the corner, and the number of points along each edge. The points are
 the centres of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
@@ -49,6 +51,10 @@ product of its second and first edges. For each grid, the minimum, average, maxi
 Points inside a closed object receive no light. They stay in the list with an illuminance of 0, but they are left out of
 these figures and of the plan, and their number is printed. An object that contains a point with light or the camera
 counts as a room, not as an object around the point.
+
+--ugr rates the glare of the luminaires, which are the surfaces with emission, by the Unified Glare Rating of CIE 117, and
+prints the background luminance in cd/m^2; --json also prints the luminance, solid angle and position index of each
+luminaire. --samples is then the number of samples for the background [default: 16384].
 
 A line of a list of points contains x,y,z or x,y,z,nx,ny,nz; a first line with names is ignored.
 
@@ -79,6 +85,9 @@ pub struct MeasureArgs {
     /// Draw the grid as a plan in false colours with isolux lines in lux, as an SVG file
     #[arg(long, value_name = "FILE.svg", requires = "grids")]
     pub plan: Option<PathBuf>,
+    /// Rate the glare for an eye that looks at a point (UGR); can be given several times
+    #[arg(id = "observers", long = "ugr", value_name = "EYE:TARGET", value_parser = glare::parse, allow_hyphen_values = true, conflicts_with_all = ["point", "list", "normal", "grids", "error"])]
+    pub observers: Vec<[Vec3; 2]>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -167,7 +176,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut sensors: Vec<Sensor> = single.take(MAX_POINTS + 1).collect();
     let alone = sensors.len();
     sensors.extend(args.grid.iter().flat_map(|grid| grid.sensors(normal, up)).take(MAX_POINTS + 1 - alone));
-    if sensors.is_empty() || sensors.len() > MAX_POINTS {
+    if args.observers.is_empty() && sensors.is_empty() || sensors.len() > MAX_POINTS {
         return Err(invalid_input(format!(
             "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid, or a list with --points"
         )));
@@ -178,6 +187,12 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.create(context) else {
         return Err(invalid_input("only path tracing can measure illuminance: set --integrator path or photons"));
     };
+    if !args.observers.is_empty() {
+        if path.photons.is_some() {
+            return Err(invalid_input("--ugr needs --integrator path"));
+        }
+        return threads::install(args.threads.map(usize::from), || glare::run(args, &compiled, &path, up, lumens));
+    }
     if path.photons.is_some()
         && let Some(point) = in_the_air(&compiled.world, &sensors)
     {

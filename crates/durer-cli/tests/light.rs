@@ -155,6 +155,32 @@ fn daylight_factor_of_the_manual() {
 }
 
 #[test]
+fn glare_of_luminaires_is_rated() {
+    let folder = lit();
+    folder.write("glare.txt", LIT.replace("emissionLuminance 20", "emissionLuminance 2000"));
+    let output = folder.expect_exit(0, "measure glare.txt --ugr -1,0.5,4:-1,0.3,0.5 --samples 1024 --json");
+    let json: serde_json::Value = serde_json::from_str(&output.out).unwrap();
+    let observer = &json["observers"][0];
+    let [luminaire] = &observer["luminaires"].as_array().unwrap()[..] else { panic!("{json}") };
+    assert!((luminaire["luminance"].as_f64().unwrap() - 2000.0).abs() < 0.1);
+    // A sphere of radius 0.3 at the distance d covers 2 pi (1 - cos asin(0.3 / d)).
+    let sin = 0.3 / (3.5_f64.powi(2) + 0.2_f64.powi(2)).sqrt();
+    let solid_angle = std::f64::consts::TAU * (1.0 - (1.0 - sin * sin).sqrt());
+    assert!((luminaire["solid_angle"].as_f64().unwrap() / solid_angle - 1.0).abs() < 0.005);
+    let [ugr, background, index] =
+        [&observer["ugr"], &observer["background"], &luminaire["position_index"]].map(|value| value.as_f64().unwrap());
+    let formula = 8.0 * (0.25 / background * solid_angle * (2000.0 / index).powi(2)).log10();
+    assert!((ugr - formula).abs() < 0.02, "{ugr} {formula}");
+    assert!(output.err.contains("1 light without extent"), "{}", output.err);
+    let rows = folder.expect_exit(0, "measure glare.txt --ugr -1,0.5,4:-1,0.5,9 --samples 64");
+    assert!(rows.out.lines().nth(1).unwrap().starts_with("-1,0.5,4,-1,0.5,9,,"), "{}", rows.out);
+    assert!(rows.err.contains("sees no luminaire"), "{}", rows.err);
+    for wrong in ["--ugr 1,2,3", "--ugr 1,2,3:1,2,3", "--ugr 0,1,0:1,1,0 --at 0,0,0"] {
+        folder.expect_exit(2, &format!("measure glare.txt {wrong}"));
+    }
+}
+
+#[test]
 fn photons_measure_light_through_glass() {
     let folder = TestFolder::new();
     let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }

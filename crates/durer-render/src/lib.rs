@@ -4,6 +4,7 @@
 mod clock;
 pub mod compile;
 pub mod film;
+pub mod glare;
 pub mod integrator;
 pub mod measure;
 pub mod render;
