@@ -421,6 +421,9 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
         ("", "emissionSpectrum warm", "", "use A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),
+        ("", "", "sun 0 1 0 skyModel hosek turbidity 0.5", "`turbidity` must be from 1 to 10"),
+        ("", "", "sun 0 1 0 skyModel hosek turbidity 10.5", "`turbidity` must be from 1 to 10"),
+        ("", "", "sun 0 1 0 skyModel nishita", "preetham"),
         ("", "", "sunAltitude 30", "`sunAltitude` needs `sunAzimuth`"),
         ("", "", "sunAltitude 95 sunAzimuth 0", "must be from -90 to 90"),
         ("", "", "sun 0 1 0 date 2026 6 21", "given twice, by `sun` and by `date`"),
@@ -620,6 +623,8 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ("zenithLuminance 900".to_string(), "`zenithLuminance` has no effect: the background has no `cieSky`"),
         (format!("{sun} zenithLuminance 900"), "`zenithLuminance` has no effect"),
         (format!("{sun} cieSky 12 turbidity 3"), "`turbidity` has no effect"),
+        ("skyModel hosek".into(), "`skyModel` has no effect"),
+        (format!("{sun} turbidity 20"), "`turbidity` 20 is outside the range of Preetham's sky: 10 is used"),
         ("groundReflectance 0.3".into(), "`groundReflectance` has no effect"),
         ("environmentRotation 30".into(), "`environmentRotation` has no effect"),
         ("environmentScale 2 2 2".into(), "`environmentScale` has no effect"),
@@ -629,7 +634,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         assert!(text.contains(words) && text.contains("s.txt:2:"), "{sky}: {text}");
     }
     for sky in [
-        format!("{sun} turbidity 3 groundReflectance 0.3 environmentRotation 30 environmentScale 2 2 2"),
+        format!("{sun} skyModel hosek turbidity 3 groundReflectance 0.3 environmentRotation 30 environmentScale 2 2 2"),
         "cieSky 16 zenithLuminance 900 groundReflectance 0.3 environmentRotation 30".into(),
         "color 0.5 0.5 0.5".into(),
     ] {

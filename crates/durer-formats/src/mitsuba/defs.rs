@@ -6,7 +6,7 @@ use durer_scene::describe::FileName;
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::TextureImage;
-use durer_scene::texture::Sky;
+use durer_scene::texture::sky::Hosek;
 use glam::DAffine3;
 use std::rc::Rc;
 
@@ -89,7 +89,7 @@ pub(super) enum InfiniteLight {
     },
     /// Clear sky with y up, and the transform from the axes of the sky to world space.
     Sky {
-        sky: Sky,
+        sky: Hosek,
         at: Span,
         scale: f32,
         to_world: DAffine3,

@@ -1,51 +1,59 @@
 //! Reads daylight emitters: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
 //!
-//! Mitsuba uses the sky of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome
-//! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sun, and Preetham's sky scaled to the same
-//! illuminance.
+//! Mitsuba's sky is that of Hosek and Wilkie with their RGB data, and is black below the horizon.
+//! The sun of Mitsuba 3 is their solar radiance of 2013, converted to RGB with 11 wavelengths,
+//! which makes it 5 to 8 % brighter than the CIE observer does. The sun of Mitsuba 0.6 is
+//! Preetham's.
 
 use super::defs::InfiniteLight;
 use super::plugin::Plugin;
 use super::state::Reader;
 use durer_scene::light::DirectionalLight;
-use durer_scene::math::{LUMINANCE, Vec3, fp};
+use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
-use durer_scene::texture::Sky;
 use durer_scene::texture::almanac::{self, Moment};
-use durer_scene::texture::sky::SUN_RADIUS;
+use durer_scene::texture::sky::{Hosek, Preetham, SUN_RADIUS, hosek};
 use glam::{DAffine3, DMat3, DVec3};
 use std::f32::consts::PI;
 
 /// Luminous efficacy of a constant spectrum in lumens per watt. Mitsuba's unit is the mean number
 /// of watts per nanometre, so the value is 683 lm/W times the integral of the CIE function y over
-/// all wavelengths.
-const LUMENS: f32 = 683.0 * 106.856_9;
+/// all wavelengths, for which Mitsuba uses this number.
+const LUMENS: f32 = 683.0 * 106.750_26;
 
-/// Illuminance in lux of level ground under the Hosek-Wilkie sky, for a ground albedo of 0.2. Each
-/// row is for one turbidity, and each column is for one elevation of the sun in degrees. Each value
-/// is a sum over 1,152 directions of `sunsky` in Mitsuba 3.9.1, multiplied by [`LUMENS`].
-const TURBIDITIES: [f32; 4] = [2.0, 3.0, 5.0, 8.0];
-const HEIGHTS: [f32; 5] = [5.0, 20.0, 40.0, 60.0, 85.0];
-const LEVEL: [[f32; 5]; 4] = [
-    [6175.0, 11238.0, 14080.0, 15241.0, 16662.0],
-    [6596.0, 12653.0, 16295.0, 17668.0, 19031.0],
-    [7638.0, 16822.0, 23228.0, 25665.0, 27006.0],
-    [8416.0, 21362.0, 34504.0, 40648.0, 38652.0],
-];
+/// Irradiance of the sun of Mitsuba's RGB variants, in little-endian single precision. Mitsuba
+/// interpolates linearly between these turbidities and elevations. `xtask/src/sky_data.py` measures
+/// the values.
+static SUN: &[u8] = include_bytes!("sun.f32");
 
-/// Interpolates bilinearly in the table.
-fn illuminance(turbidity: f32, height: f32) -> f32 {
-    let ((i, a), (j, b)) = (interval(&TURBIDITIES, turbidity), interval(&HEIGHTS, height));
-    let row = |i: usize| LEVEL[i][j] + b * (LEVEL[i][j + 1] - LEVEL[i][j]);
-    row(i) + a * (row(i + 1) - row(i))
+/// Number of turbidities in the table, which are 1 to 10.
+const TURBIDITIES: usize = 10;
+
+/// Number of elevations in the table, which are 2 to 89 degrees.
+const ELEVATIONS: usize = 30;
+
+/// Irradiance of a surface that faces the sun, for a turbidity and an elevation in degrees.
+fn sun_irradiance(turbidity: f32, elevation: f32) -> Vec3 {
+    let entry = |turbidity: usize, elevation: usize| {
+        let start = 12 * (turbidity * ELEVATIONS + elevation);
+        Vec3::from([0, 4, 8].map(|at| {
+            let bytes = SUN.get(start + at..start + at + 4).map_or([0; 4], |b| [b[0], b[1], b[2], b[3]]);
+            f32::from_le_bytes(bytes)
+        }))
+    };
+    let (i, a) = interval(turbidity - 1.0, TURBIDITIES);
+    let (j, b) = interval((elevation - 2.0) / 3.0, ELEVATIONS);
+    let row = |i: usize| entry(i, j).lerp(entry(i, j + 1), b);
+    // A red sun at the horizon is outside the gamut.
+    row(i).lerp(row(i + 1), a).max(Vec3::ZERO)
 }
 
-/// Finds the interval of an ascending list that contains `x`. Returns the index of the interval and
-/// the relative position of `x` within it.
-fn interval(steps: &[f32], x: f32) -> (usize, f32) {
-    let x = x.clamp(steps[0], steps[steps.len() - 1]);
-    let i = steps[1..steps.len() - 1].iter().take_while(|step| **step < x).count();
-    (i, (x - steps[i]) / (steps[i + 1] - steps[i]))
+/// Finds the interval that contains a position in a list. Returns the index of the interval and the
+/// position relative to it.
+fn interval(position: f32, entries: usize) -> (usize, f32) {
+    let position = position.clamp(0.0, (entries - 1) as f32);
+    let i = (position as usize).min(entries - 2);
+    (i, position - i as f32)
 }
 
 impl Reader<'_> {
@@ -66,36 +74,46 @@ impl Reader<'_> {
             Some(way) => up * to_world.matrix3.inverse() * way,
             None => self.sun_direction_by_time(plugin).as_dvec3(),
         };
-        plugin.mark_known(&[
-            "sun_aperture",
-            "sun_radius_scale",
-            "resolution",
-            "stretch",
-            "sampling_weight",
-            "complex_sun",
-        ]);
-        plugin.warn_unsupported(report, &["albedo"], "a ground albedo of 0.2 is used");
+        let default_albedo = if self.loader.is_old { 0.2 } else { 0.3 };
+        let albedo = plugin.get("albedo").map_or(Vec3::splat(default_albedo), |property| {
+            self.reflectance(property).unwrap_or_else(|| self.color(plugin, "albedo", Vec3::splat(default_albedo)))
+        });
+        let (low, high) = hosek::TURBIDITIES.into_inner();
+        if !(low..=high).contains(&turbidity) {
+            report.error(plugin.span("turbidity"), format!("`turbidity` must be from {low} to {high}"));
+        }
+        if !(0.0..=1.0).contains(&albedo.min_element()) || albedo.max_element() > 1.0 {
+            report.error(plugin.span("albedo"), "`albedo` must be from 0 to 1");
+        }
+        let radius = match self.loader.is_old {
+            true => SUN_RADIUS * number("sun_radius_scale", 1.0).max(0.0),
+            false => plugin.positive(report, "sun_aperture").unwrap_or(0.5358) / 2.0,
+        };
+        if radius >= 90.0 {
+            report.error(plugin.span("sun_aperture"), "the sun must be less than 180 degrees wide");
+        }
+        plugin.mark_known(&["resolution", "stretch", "sampling_weight"]);
+        if plugin.boolean(report, "complex_sun") == Some(true) {
+            plugin.warn_unsupported(report, &["complex_sun"], "the sun is a uniform disc of the same irradiance");
+        }
         plugin.warn_unused(report);
-        report.unsupported_once(
-            plugin.at,
-            "the sky of Hosek and Wilkie has no counterpart: Preetham's sky with the same illuminance is used",
-        );
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
             return report.unsupported_once(plugin.at, "the sun is below the horizon: this light is left out");
         };
-        let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
         if plugin.kind != "sun" && sky_scale > 0.0 {
-            let measured = PI * sky.mean_on_horizontal().dot(LUMINANCE);
-            let height = fp::asin_f64(way.y).to_degrees() as f32;
-            let scale = sky_scale * illuminance(turbidity, height) / measured.max(1.0) / LUMENS;
+            let (sky, scale) = (Hosek::new(way.as_vec3(), turbidity, albedo), sky_scale / LUMENS);
             self.set_infinite_light(InfiniteLight::Sky { sky, at: plugin.at, scale, to_world });
         }
         if plugin.kind != "sky" && sun_scale > 0.0 {
             let direction = -to_world.transform_vector3(way).normalize_or(DVec3::Y).as_vec3();
-            // The colour of a light is its illuminance divided by pi.
-            let color = sky.sun() * (sun_scale / LUMENS / PI);
-            let sun = DirectionalLight { direction, color, spread: Some(SUN_RADIUS), ..DirectionalLight::default() };
+            let irradiance = match self.loader.is_old {
+                true => Preetham::new(way.as_vec3(), turbidity).sun() / LUMENS,
+                false => sun_irradiance(turbidity, fp::asin_f64(way.y).to_degrees() as f32),
+            };
+            // The colour of a light is its irradiance divided by pi.
+            let color = irradiance * (sun_scale / PI);
+            let sun = DirectionalLight { direction, color, spread: Some(radius), ..DirectionalLight::default() };
             self.scene.lights.get_or_insert_default().push(Spanned { value: sun.into(), span: plugin.at });
         }
     }
@@ -111,20 +129,5 @@ impl Reader<'_> {
             return Vec3::Y;
         }
         almanac::direction(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn illuminance_is_linear_between_table_entries() {
-        assert_eq!(
-            (illuminance(3.0, 20.0), illuminance(1.0, 0.0), illuminance(10.0, 90.0)),
-            (12653.0, 6175.0, 38652.0)
-        );
-        assert_eq!(illuminance(4.0, 40.0), 0.5 * (16295.0 + 23228.0));
-        assert_eq!(illuminance(2.0, 50.0), 0.5 * (14080.0 + 15241.0));
     }
 }

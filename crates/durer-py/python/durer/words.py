@@ -39,13 +39,15 @@ class Background(Thing):
 
     time_zone: number, from -14 to 14. Offset of the local clock from UTC in hours, including daylight saving time; default 0.
 
+    sky_model: `preetham`, `hosek`. Model of the clear sky: Preetham's, or that of Hosek and Wilkie, which is closer to measured skies.
+
     turbidity: number, more than 0. Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
 
     cie_sky: whole number, from 1 to 16. Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16 traditional overcast), which lights the scene in cd/m^2, without direct sunlight. All except 1, 3, 5 and 16 need the position of the sun, set by `sun`.
 
     zenith_luminance: number, more than 0. Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
 
-    ground_reflectance: number, from 0 to 1. Fraction of the light from sun and sky that the ground below the horizon reflects. The default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's light by default.
+    ground_reflectance: number, from 0 to 1. Fraction of the light from sun and sky that the ground below the horizon reflects. The default is 0.2; with Preetham's sky, the ground has a fifth of the zenith's light by default. A bright ground also brightens the sky of Hosek and Wilkie.
 
     environment_rotation: number. Rotation of the environment about y, in degrees.
 
@@ -67,6 +69,7 @@ class Background(Thing):
         date: Optional[npt.ArrayLike] = None,
         time: Optional[npt.ArrayLike] = None,
         time_zone: Optional[float] = None,
+        sky_model: Optional[Literal["preetham", "hosek"]] = None,
         turbidity: Optional[float] = None,
         cie_sky: Optional[Union[int, Material]] = None,
         zenith_luminance: Optional[float] = None,
@@ -87,6 +90,7 @@ class Background(Thing):
             ("date", date),
             ("time", time),
             ("timeZone", time_zone),
+            ("skyModel", sky_model),
             ("turbidity", turbidity),
             ("cieSky", cie_sky),
             ("zenithLuminance", zenith_luminance),

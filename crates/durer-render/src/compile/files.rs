@@ -16,7 +16,7 @@ use durer_scene::scene::{Assets, Background, PictureBytes};
 use durer_scene::shape::{HeightField, Mesh, MeshData};
 use durer_scene::source::{Digest, SourceError};
 use durer_scene::spectrum::{Curve, illuminants};
-use durer_scene::texture::{CubeMap, Environment, Sky, Texture, sky};
+use durer_scene::texture::{CubeMap, Environment, Texture, sky};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -331,11 +331,7 @@ impl<'r> Loader<'r> {
             let picture = match written.cie_sky() {
                 Some(sky) => sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
                 None => {
-                    let clear = Sky::new(written.sun()?, written.turbidity());
-                    let clear = match written.ground_reflectance {
-                        Some(share) => clear.with_ground(share),
-                        None => clear,
-                    };
+                    let clear = written.clear_sky()?;
                     sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
                 }
             };

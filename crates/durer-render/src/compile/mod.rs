@@ -28,8 +28,7 @@ use durer_scene::scene::{self, Group, MatrixOp, ObjectKind, Scene};
 use durer_scene::shape::mesh::enlarged;
 use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
 use durer_scene::source::AssetSource;
-use durer_scene::texture::Sky;
-use durer_scene::texture::sky::SUN_RADIUS;
+use durer_scene::texture::sky::{SUN_RADIUS, SkyModel, preetham};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -350,6 +349,7 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let any = standard || sun || picture;
     for (word, given, has_use, wanted) in [
         ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
+        ("skyModel", sky.sky_model.is_some(), clear, "clear sky (a sun without `cieSky`)"),
         ("turbidity", sky.turbidity.is_some(), clear, "clear sky (a sun without `cieSky`)"),
         ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun or `cieSky`"),
         ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
@@ -359,6 +359,12 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
             let message = format!("`{word}` has no effect: the background has no {wanted}");
             diagnostics.push(Diagnostic::warning(message).at(scene.background_span));
         }
+    }
+    let (turbidity, (low, high)) = (sky.turbidity(), preetham::TURBIDITIES.into_inner());
+    if clear && sky.sky_model.unwrap_or_default() == SkyModel::Preetham && !(low..=high).contains(&turbidity) {
+        let used = turbidity.clamp(low, high);
+        let message = format!("`turbidity` {turbidity} is outside the range of Preetham's sky: {used} is used");
+        diagnostics.push(Diagnostic::warning(message).at(scene.background_span));
     }
 }
 
@@ -375,8 +381,7 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
 /// Returns a directional light for the sun of a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
     // The CIE standard skies depend on the sun's position but have no direct sunlight.
-    let to_sun = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
-    let sky = Sky::new(to_sun, background.turbidity());
+    let (sky, to_sun) = background.clear_sky().zip(background.sun())?;
     let (turn, scale) = background.environment_transform();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);

@@ -18,9 +18,9 @@ use crate::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, 
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::shape::{HeightField, MeshData, Primitive, Sphere, TriangleMesh, VoxelGrid};
-use crate::texture::CieSky;
 use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
+use crate::texture::{CieSky, Sky, SkyModel};
 pub use assets::{Assets, NamedTexture, PictureBytes, TextureImage};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
 use durer_diag::Span;
@@ -67,6 +67,9 @@ described! {
         time: Option<Vec3> = None, optional, Constraint::Any, ["time" in set::DURER];
         /// Offset of the local clock from UTC in hours, including daylight saving time; default 0.
         time_zone: Option<f32> = None, optional, Constraint::Within(-14.0, 14.0), ["timeZone" in set::DURER];
+        /// Model of the clear sky: Preetham's, or that of Hosek and Wilkie, which is closer to
+        /// measured skies.
+        sky_model: Option<SkyModel> = None, optional, Constraint::Any, ["skyModel" in set::DURER];
         /// Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
         turbidity: Option<f32> = None, optional, Constraint::Positive, ["turbidity" in set::DURER];
         /// Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16
@@ -76,8 +79,8 @@ described! {
         /// Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
         zenith_luminance: Option<f32> = None, optional, Constraint::Positive, ["zenithLuminance" in set::DURER];
         /// Fraction of the light from sun and sky that the ground below the horizon reflects. The
-        /// default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's
-        /// light by default.
+        /// default is 0.2; with Preetham's sky, the ground has a fifth of the zenith's light by
+        /// default. A bright ground also brightens the sky of Hosek and Wilkie.
         ground_reflectance: Option<f32> = None, optional, Constraint::UnitInterval, ["groundReflectance" in set::DURER];
         /// Rotation of the environment about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Constraint::Any, ["environmentRotation" in set::DURER];
@@ -163,6 +166,12 @@ impl Background {
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
         self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
+    }
+
+    /// Returns the clear sky if the background has a sun above the horizon and no CIE sky.
+    pub fn clear_sky(&self) -> Option<Sky> {
+        let sun = self.sun().filter(|_| self.cie_sky.is_none() && !self.is_night())?;
+        Some(Sky::new(self.sky_model.unwrap_or_default(), sun, self.turbidity(), self.ground_reflectance))
     }
 
     /// Returns the rotation of the environment about the y axis in degrees, and the scale of the

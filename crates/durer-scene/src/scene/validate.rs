@@ -13,6 +13,7 @@ use crate::material::Pattern;
 use crate::medium::Fog;
 use crate::shape::Shape;
 use crate::texture::CieSky;
+use crate::texture::sky::{SkyModel, hosek};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 
 /// Maximum nesting depth of objects. The scene language allows 200 levels, each of which becomes at
@@ -70,13 +71,18 @@ impl Background {
     ///
     /// # Errors
     ///
-    /// Fails if the sun's position is given twice, is incomplete, or has an invalid time, or if a
-    /// standard sky depends on the sun but there is no sun.
+    /// Fails if the sun's position is given twice, is incomplete, or has an invalid time, if a
+    /// standard sky depends on the sun but there is no sun, or if the sky's model has no data for
+    /// the turbidity.
     pub fn validate(&self) -> Result<(), String> {
         let sun = self.sun_direction()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::depends_on_sun) && sun.is_none();
-        match lacks_sun {
-            true => Err("this `cieSky` needs the position of the sun, but the background has no `sun`".into()),
+        if lacks_sun {
+            return Err("this `cieSky` needs the position of the sun, but the background has no `sun`".into());
+        }
+        let (low, high) = hosek::TURBIDITIES.into_inner();
+        match self.sky_model == Some(SkyModel::Hosek) && !(low..=high).contains(&self.turbidity()) {
+            true => Err(format!("with `skyModel hosek`, `turbidity` must be from {low} to {high}")),
             false => Ok(()),
         }
     }

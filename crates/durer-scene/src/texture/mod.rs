@@ -14,7 +14,7 @@ pub use cie_sky::CieSky;
 pub use cube_map::CubeMap;
 pub use environment::Environment;
 pub use mapping::{Channel, Mapping, Wrap};
-pub use sky::Sky;
+pub use sky::{Sky, SkyModel};
 use std::sync::Arc;
 pub use taps::Tap;
 
