@@ -20,7 +20,7 @@ use durer::load;
 use durer::scene::{DefaultLighting, RenderDefaults, Scene};
 use std::path::{Path, PathBuf};
 
-/// Convert a scene to another dialect, JSON, glTF, pbrt or Mitsuba, or its meshes to PLY, OBJ or STL
+/// Convert a scene to a dialect, JSON, glTF, pbrt or Mitsuba, or its meshes to PLY, OBJ or STL
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert scene.txt -o scene.xml\n  durer convert model.glb -o scene.txt"

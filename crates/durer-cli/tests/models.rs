@@ -167,14 +167,14 @@ fn scenes_for_other_programs_are_saved_with_their_files_or_not_at_all() {
         folder.expect_failure(1, &format!("convert a.stl -o {name}"), &["cannot create the folder `b`"]);
         std::fs::remove_file(folder.path("b")).unwrap();
         // A mesh would be written where a folder is.
-        std::fs::create_dir_all(folder.path("b/a.ply")).unwrap();
+        std::fs::create_dir_all(folder.path("b/a.stl.ply")).unwrap();
         assert_ne!(folder.run(&format!("convert a.stl -o {name}")).code, Some(0));
         std::fs::remove_dir_all(folder.path("b")).unwrap();
         assert_eq!(entries(&folder), before, "{name}");
         let output = folder.expect_exit(0, &format!("convert a.stl -o {name}")).out;
-        assert!(output.contains(name) && output.contains("a.ply"), "{output}");
-        assert!(folder.expect_exit(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
-        // Files of an earlier conversion are replaced, but not the files that the scene itself uses.
+        assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");
+        folder.expect_exit(0, &format!("render {name} -o a.png {SMALL} -q"));
+        // Files of an earlier conversion are replaced, but not those that the scene itself uses.
         folder.expect_exit(0, &format!("convert a.stl -o {name}"));
         folder.expect_failure(2, &format!("convert {name} -o {name}"), &["would overwrite"]);
     }

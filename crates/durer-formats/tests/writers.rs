@@ -1,5 +1,5 @@
-//! Tests that scenes written for pbrt and Mitsuba are read again without warnings, and give the same
-//! picture.
+//! Tests that scenes written for pbrt and Mitsuba are read again without warnings, and give the
+//! same picture.
 
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;

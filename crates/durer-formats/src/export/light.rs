@@ -8,7 +8,7 @@ use durer_scene::describe::FileName;
 use durer_scene::light::{Fade, Illuminate as _, Light};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::scene::{Background, PictureBytes};
-use durer_scene::spectrum::Curve;
+use durer_scene::spectrum::{Curve, illuminants};
 use durer_scene::texture::Environment;
 use durer_scene::texture::sky::{Sky, environment_map};
 use std::f32::consts::PI;
@@ -59,6 +59,11 @@ impl Export<'_> {
         lamps
     }
 
+    /// Returns the spectrum of a light at luminance 1: an illuminant or a file.
+    pub(super) fn light_spectrum(&self, name: &FileName) -> Option<Curve> {
+        illuminants::illuminant(&name.path).or_else(|| Curve::light(self.spectrum(name)?))
+    }
+
     fn warn_extent(&mut self, program: &str) {
         self.warn_lost(format!("distant lights of {program} have no angular size: shadows are sharp"));
     }
@@ -66,9 +71,7 @@ impl Export<'_> {
     fn lamp(&mut self, light: &Light, program: &str) -> Option<Lamp> {
         let mut light = light.with_unit_color();
         if let Some(name) = light.spectrum().cloned() {
-            let curve = durer_scene::spectrum::illuminants::illuminant(&name.path)
-                .or_else(|| self.spectrum(&name).and_then(Curve::light));
-            match curve {
+            match self.light_spectrum(&name) {
                 Some(curve) => *light.color_mut() *= curve.color(),
                 None => self.warn_lost(format!("the spectrum `{}` cannot be read: it is left out", name.path)),
             }

@@ -71,8 +71,8 @@ impl<'a> Export<'a> {
         data.map(Arc::new)
     }
 
-    /// Returns the picture that a material names: a texture, or a file with the default mapping. The
-    /// part after a colon, as in `picture.png:g`, is a channel.
+    /// Returns the picture that a material names: a texture, or a file with the default mapping.
+    /// The part after a colon, as in `picture.png:g`, is a channel.
     pub fn picture(&self, name: &FileName) -> TextureImage {
         if let Some(picture) = self.scene.assets.pictures.get(&name.path) {
             return picture.clone();

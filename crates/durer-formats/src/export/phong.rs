@@ -26,7 +26,8 @@ impl Export<'_> {
         if m.specular_color != Vec3::ZERO {
             self.warn_lost(format!("{program} has no Blinn or Phong highlights: a rough metal is mixed in"));
         }
-        // A highlight of GGX that is as wide near its peak. R·L falls off four times as fast as N·H.
+        // A highlight of GGX that is as wide near its peak. R·L falls off four times as fast as
+        // N·H.
         let is_phong = m.exponent.is_none() && m.shininess.is_some();
         let exponent = m.exponent.or(m.shininess).unwrap_or(1.0);
         let alpha = (2.0 / (if is_phong { 4.0 * exponent } else { exponent } + 2.0)).sqrt();

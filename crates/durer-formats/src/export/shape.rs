@@ -61,8 +61,8 @@ impl Placed<'_> {
         Some((self.to_world.transform_point3(center.as_dvec3()), scale * f64::from(*radius)))
     }
 
-    /// Transform and radius of a sphere as [`Placed::sphere`] finds it, if the poles are on the z axis
-    /// and u is 0 at +x, as in pbrt and Mitsuba.
+    /// Transform and radius of a sphere as [`Placed::sphere`] finds it, if the poles are on the z
+    /// axis and u is 0 at +x, as in pbrt and Mitsuba.
     pub fn turned_sphere(&self) -> Option<(DAffine3, f64)> {
         let (translation, radius) = self.sphere().filter(|_| !self.is_mirrored())?;
         // In Dürer, the poles are on the y axis, and u is 1/2 at -z.
@@ -95,7 +95,8 @@ impl Placed<'_> {
     }
 }
 
-/// Returns the factor of a transform that scales all lengths equally, or `None` for other transforms.
+/// Returns the factor of a transform that scales all lengths equally, or `None` for other
+/// transforms.
 fn uniform_scale(m: &DMat3) -> Option<f64> {
     let scale = m.x_axis.length();
     let product = m.transpose() * *m;

@@ -8,7 +8,6 @@ use durer_scene::material::principled::Walls;
 use durer_scene::material::{Pattern as _, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{Material, TextureImage};
-use durer_scene::spectrum::Curve;
 
 /// Simple surface, or a combination of surfaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,8 +159,8 @@ impl Look {
 }
 
 impl Export<'_> {
-    /// Returns the look of a material by its number. `program` is the name of the other program, for
-    /// messages.
+    /// Returns the look of a material by its number. `program` is the name of the other program,
+    /// for messages.
     pub fn look(&mut self, number: u32, program: &str) -> Look {
         let Some(material) = self.scene.materials.get(number as usize) else { return Look::plain() };
         match &material.value {
@@ -206,7 +205,7 @@ impl Export<'_> {
     fn emission(&mut self, m: &PrincipledMaterial) -> Option<Emission> {
         let mut color = m.emission_color;
         if let Some(name) = &m.emission_spectrum {
-            match self.spectrum(name).and_then(Curve::light) {
+            match self.light_spectrum(name) {
                 Some(curve) => color *= curve.color(),
                 None => self.warn_lost(format!("the spectrum `{}` is left out", name.path)),
             }

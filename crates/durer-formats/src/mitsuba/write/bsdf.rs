@@ -28,7 +28,8 @@ impl Writer<'_> {
                 tinted(pane, *reflected, *transmitted)
             }
             Surface::Sheet { color, through } => {
-                // At this roughness, the diffuse lobe of Disney's material has an albedo of about 1.
+                // At this roughness, the diffuse lobe of Disney's material has an albedo of about
+                // 1.
                 const ROUGHNESS: f32 = 0.5;
                 let albedo = crate::disney::diffuse_albedo(ROUGHNESS);
                 let color = Paint { color: color.color / albedo, ..color.clone() };

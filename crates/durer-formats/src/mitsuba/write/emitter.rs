@@ -73,8 +73,8 @@ impl Writer<'_> {
     }
 }
 
-/// Returns the width of the beam in degrees for which a light that fades linearly up to `angle` emits
-/// as much as one that fades between the cosines of both angles.
+/// Returns the width of the beam in degrees for which a light that fades linearly up to `angle`
+/// emits as much as one that fades between the cosines of both angles.
 fn beam_width([angle, inner]: [f32; 2], fade: Fade) -> f32 {
     const STEPS: u16 = 256;
     let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;

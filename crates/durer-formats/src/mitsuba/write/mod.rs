@@ -1,8 +1,8 @@
 //! Writer of Mitsuba 3 scenes in XML, with meshes as PLY and pictures in a folder beside the scene.
 //! It is the inverse of the reader.
 //!
-//! Source: *Mitsuba 3 documentation*, "Plugin reference", version 3.9. Content without a counterpart
-//! is reported once for each message, and the report has no span.
+//! Source: *Mitsuba 3 documentation*, "Plugin reference", version 3.9. Content without a
+//! counterpart is reported once for each message, and the report has no span.
 
 mod bsdf;
 mod element;
@@ -27,7 +27,7 @@ const PROGRAM: &str = "Mitsuba";
 /// Writer that converts one scene.
 struct Writer<'a> {
     export: Export<'a>,
-    /// Materials by number. Objects without a material have no number.
+    /// Materials by number. The key is `None` for objects without a material.
     looks: BTreeMap<Option<u32>, Look>,
     /// Elements that shapes refer to by their id.
     shared: Vec<Element>,

@@ -115,8 +115,8 @@ impl Writer<'_> {
                 }
                 let coat = directive.string("type", "coateddiffuse").float("eta", ior).float("thickness", THIN);
                 let coat = self.rough(coat, rough);
-                // pbrt tints light each time it is reflected between base and boundary. If Dürer does
-                // not, choose the colour for which the sum over all reflections is the same.
+                // pbrt tints light each time it is reflected between base and boundary. If Dürer
+                // does not, choose the colour for which the sum over all reflections is the same.
                 let inside = fresnel::diffuse(1.0 / ior);
                 let darker = |color: Vec3| color / (Vec3::splat(1.0 - inside) + inside * color);
                 match darkens {
@@ -169,8 +169,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Adds a colour, or a picture that is multiplied by the colour. `change`, which `what` names, is
-    /// applied to the product.
+    /// Adds a colour, or a picture that is multiplied by the colour. `change`, which `what` names,
+    /// is applied to the product.
     fn paint(
         &mut self,
         directive: Directive,

@@ -26,7 +26,7 @@ const PROGRAM: &str = "pbrt";
 /// Writer that converts one scene.
 struct Writer<'a> {
     export: Export<'a>,
-    /// Materials by number. Objects without a material have no number.
+    /// Materials by number. The key is `None` for objects without a material.
     looks: BTreeMap<Option<u32>, Look>,
     /// Textures, materials and media, which precede the shapes that name them.
     named: String,
