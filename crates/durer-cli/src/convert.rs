@@ -13,15 +13,17 @@ use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::asset_export::{AssetFile, sanitize_name};
 use durer::format::course::write;
+use durer::format::scene::Written;
 use durer::format::{json, mesh_format_for, scene_format_for};
+use durer::image::Destination;
 use durer::load;
 use durer::scene::{DefaultLighting, RenderDefaults, Scene};
 use std::path::{Path, PathBuf};
 
-/// Convert a scene to another dialect, JSON or glTF, or its meshes to PLY, OBJ or STL
+/// Convert a scene to a dialect, JSON, glTF, pbrt or Mitsuba, or its meshes to PLY, OBJ or STL
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert model.glb -o scene.txt"
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert scene.txt -o scene.xml\n  durer convert model.glb -o scene.txt"
 )]
 pub struct ConvertArgs {
     /// Scene or model file
@@ -55,11 +57,15 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
     if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
         let message = format!("`.{ending}` files cannot be written: use .txt or .json for a scene");
-        return Err(invalid_input(format!("{message}, .gltf or .glb for a model, and .ply, .obj or .stl for meshes")));
+        let message = format!(
+            "{message}, .pbrt or .xml for pbrt and Mitsuba, .gltf or .glb for a model, and .ply, .obj or .stl for meshes"
+        );
+        return Err(invalid_input(message));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
-    // Write only the model, because the renderer adds a missing camera and lights later.
-    options.scene_defaults.convert_only = as_scene.is_some();
+    // Write only the model, because the renderer adds a missing camera and lights later. Other
+    // programs do not.
+    options.scene_defaults.convert_only = as_scene.is_some_and(|format| !format.is_complete_scene);
     // A camera in a file has no image size, so the model is framed for a square picture.
     options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
@@ -69,9 +75,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     loaded.named_files().iter().try_for_each(|path| registry.register_input(path))?;
     if as_scene.is_some() {
         let mut warnings = Diagnostics::default();
-        let bytes = loaded.write(&name, &mut warnings);
+        let written = loaded.write(&name, &mut warnings).unwrap_or_default();
         report::print(&files, &warnings, false);
-        return output::save(&[(&destination, bytes.unwrap_or_default())], false);
+        return save_with_files(args, destination, written, &mut registry);
     }
     if let Some(format) = as_mesh {
         let mut warnings = Diagnostics::default();
@@ -104,17 +110,46 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         ));
     }
     let (scene, files) = loaded.export_assets(&folder);
-    let base = args.output.parent().unwrap_or(Path::new(""));
-    std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot create the folder `{folder}`"))?;
-    let writes =
-        |(path, bytes): AssetFile| Ok((registry.register_output("a file of the model", &base.join(path))?, bytes));
-    let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
-    all.push((destination, text(&scene)));
     if let Some(options) = requested_picture(&loaded.scene.render_defaults) {
         let message = "the input file also sets the size and quality of the picture, but a scene file cannot store \
                        these settings";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
+    let bytes = text(&scene);
+    save_with_files(args, destination, Written { bytes, files }, &mut registry)
+}
+
+/// Saves a scene and the files beside it: all of them or none.
+fn save_with_files(
+    args: &ConvertArgs,
+    destination: Destination,
+    written: Written,
+    registry: &mut FileRegistry,
+) -> Result<(), Failure> {
+    let base = args.output.parent().unwrap_or(Path::new(""));
+    let folder = written.files.first().and_then(|(path, _)| Path::new(path).parent()).map(|folder| base.join(folder));
+    let is_new = folder.as_ref().is_some_and(|folder| !folder.exists());
+    if let Some(folder) = &folder {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder `{}`", folder.display()))?;
+    }
+    let saved = save_all(base, destination, written, registry);
+    if let (Err(_), true, Some(folder)) = (&saved, is_new, &folder) {
+        // The folder is empty, because nothing was saved.
+        std::fs::remove_dir(folder).ok();
+    }
+    saved
+}
+
+fn save_all(
+    base: &Path,
+    destination: Destination,
+    written: Written,
+    registry: &mut FileRegistry,
+) -> Result<(), Failure> {
+    let writes =
+        |(path, bytes): AssetFile| Ok((registry.register_output("a file of the model", &base.join(path))?, bytes));
+    let mut all = written.files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
+    all.push((destination, written.bytes));
     let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
 }

@@ -153,6 +153,33 @@ fn mitsuba_sensors_are_cameras_and_scenes_convert_to_gltf() {
     folder.expect_failure(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
 
+#[test]
+fn scenes_for_other_programs_are_saved_with_their_files_or_not_at_all() {
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
+    let entries = |folder: &TestFolder| std::fs::read_dir(folder.path(".")).unwrap().count();
+    for name in ["b.xml", "b.pbrt"] {
+        let before = entries(&folder);
+        folder.expect_failure(1, &format!("convert a.stl -o missing/{name}"), &["does not exist"]);
+        folder.expect_failure(2, &format!("convert a.stl -o {name} --to durer"), &["cannot be written"]);
+        // A file has the name of the folder for the meshes.
+        folder.write("b", "");
+        folder.expect_failure(1, &format!("convert a.stl -o {name}"), &["cannot create the folder `b`"]);
+        std::fs::remove_file(folder.path("b")).unwrap();
+        // A mesh would be written where a folder is.
+        std::fs::create_dir_all(folder.path("b/a.stl.ply")).unwrap();
+        assert_ne!(folder.run(&format!("convert a.stl -o {name}")).code, Some(0));
+        std::fs::remove_dir_all(folder.path("b")).unwrap();
+        assert_eq!(entries(&folder), before, "{name}");
+        let output = folder.expect_exit(0, &format!("convert a.stl -o {name}")).out;
+        assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");
+        folder.expect_exit(0, &format!("render {name} -o a.png {SMALL} -q"));
+        // Files of an earlier conversion are replaced, but not those that the scene itself uses.
+        folder.expect_exit(0, &format!("convert a.stl -o {name}"));
+        folder.expect_failure(2, &format!("convert {name} -o {name}"), &["would overwrite"]);
+    }
+}
+
 const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
     Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }";
 

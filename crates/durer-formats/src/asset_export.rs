@@ -19,6 +19,20 @@ pub fn sanitize_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
+/// Returns a valid name that is similar to `of` and not yet in use. `used_names` holds the names in
+/// use, in lower case.
+pub(crate) fn free_name(of: &str, extension: &str, used_names: &mut BTreeSet<String>) -> String {
+    let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
+    let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
+    let stem: String = sanitize_name(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
+    let stem = if stem.trim_matches('.').is_empty() { "unnamed" } else { stem.trim_start_matches('.') };
+    let numbered = (0..).map(|i| if i == 0 { format!("{stem}{ending}") } else { format!("{stem}-{i}{ending}") });
+    let free = |name: &String| !used_names.contains(&name.to_lowercase());
+    let name = numbered.into_iter().find(free).unwrap_or_default();
+    used_names.insert(name.to_lowercase());
+    name
+}
+
 /// Returns a copy of the scene in which all meshes and pictures have been moved to files in
 /// `folder`, together with these files. Files that the scene names are copied too; files that
 /// cannot be read keep their names.
@@ -63,22 +77,9 @@ struct AssetExport<'a> {
 }
 
 impl AssetExport<'_> {
-    /// Returns a valid name that is similar to `of` and not yet in use.
-    fn name(&mut self, of: &str, extension: &str) -> String {
-        let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
-        let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
-        let stem: String = sanitize_name(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
-        let stem = if stem.trim_matches('.').is_empty() { "unnamed" } else { stem.trim_start_matches('.') };
-        let numbered = (0..).map(|i| if i == 0 { format!("{stem}{ending}") } else { format!("{stem}-{i}{ending}") });
-        let free = |name: &String| !self.used_names.contains(&name.to_lowercase());
-        let name = numbered.into_iter().find(free).unwrap_or_default();
-        self.used_names.insert(name.to_lowercase());
-        name
-    }
-
     /// Adds a file and returns its path relative to the scene file.
     fn file(&mut self, of: &str, extension: &str, bytes: Vec<u8>) -> String {
-        let (folder, name) = (self.folder, self.name(of, extension));
+        let (folder, name) = (self.folder, free_name(of, extension, &mut self.used_names));
         let path = format!("{folder}/{name}");
         self.files.push((path.clone(), bytes));
         path
@@ -165,7 +166,7 @@ impl AssetExport<'_> {
         if *mapping == Mapping::default() {
             return file;
         }
-        let own = self.name(&file, "");
+        let own = free_name(&file, "", &mut self.used_names);
         let picture = TextureImage { bytes: PictureBytes::File(file), mapping: *mapping };
         self.textures.insert(name.to_string(), (own.clone(), picture));
         own

@@ -14,6 +14,7 @@ pub mod curve;
 mod decoder;
 mod disney;
 mod emitters_only;
+mod export;
 mod files;
 #[cfg(feature = "fs")]
 pub mod folder;

@@ -1,6 +1,7 @@
 //! Description of a scene format, which says how to recognise, read, and write files in this
 //! format.
 
+use super::asset_export::AssetFile;
 use durer_diag::{Diagnostics, Files};
 use durer_scene::dialect::MeshNormals;
 use durer_scene::scene::{Axis, Scene, SceneDefaults};
@@ -32,8 +33,18 @@ pub struct SceneFormat {
     pub light_hint: Option<&'static str>,
 }
 
-/// Function that encodes a scene as a file.
-pub type WriteScene = fn(&Scene, &WriteContext, &mut Diagnostics) -> Vec<u8>;
+/// Function that encodes a scene as a file, and as other files beside it.
+pub type WriteScene = fn(&Scene, &WriteContext, &mut Diagnostics) -> Written;
+
+/// Scene as a file, with the files that it refers to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Written {
+    /// Bytes of the scene file.
+    pub bytes: Vec<u8>,
+    /// Meshes and pictures beside the scene. All of them are in one folder, which has the name of
+    /// the scene file without its extension.
+    pub files: Vec<AssetFile>,
+}
 
 /// Input of a scene writer other than the scene itself: the name of the file, the asset source, and
 /// some settings.
@@ -44,6 +55,8 @@ pub struct WriteContext<'a> {
     pub source: &'a dyn AssetSource,
     /// Shading of triangles that have no normals.
     pub normals: MeshNormals,
+    /// True if the 8-bit values of the textures of Phong materials are in sRGB encoding.
+    pub srgb_textures: bool,
     /// Memory limit in bytes for decoding one picture.
     pub memory: u64,
 }

@@ -96,7 +96,7 @@ pub(super) fn bilinear(image: &Image, place: Vec2) -> Color {
 
 /// Computes the texels of an environment map from the light in each direction, in the layout of
 /// [`Environment`](durer_scene::texture::Environment).
-fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
+pub(super) fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
     let columns = 2 * rows;
     let texel = |i: u32| {
         let (x, y) = (i % columns, i / columns);

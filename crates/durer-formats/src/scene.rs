@@ -2,7 +2,7 @@
 //! read as a scene with one mesh.
 
 use super::model::SceneFormat;
-pub use super::model::{ReadInput, WriteContext, WriteScene};
+pub use super::model::{ReadInput, WriteContext, WriteScene, Written};
 use super::pictures::picture_error;
 use super::signature::wrong_format_error;
 use super::{MeshFormat, extension, obj, off, panorama, ply, read_mesh, sticks, stl};

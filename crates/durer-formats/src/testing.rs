@@ -1,10 +1,14 @@
 //! Shared helpers for tests of readers, which read texts as scenes and format the diagnostics.
 
 use crate::folder::FolderSource;
-use crate::scene::{ReadInput, find_scene_format, read_model};
+use crate::scene::{ReadInput, WriteContext, find_scene_format, read_model};
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
+use durer_scene::dialect::MeshNormals;
 use durer_scene::scene::{Scene, SceneDefaults};
+use glam::DVec3;
+use serde::Serialize;
+use serde_json::Value;
 use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
@@ -70,4 +74,67 @@ pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
         std::fs::write(path, bytes).unwrap();
     }
     folder
+}
+
+/// Reads a text, writes the scene in the format of its name, and reads that again. Returns both
+/// scenes and the messages of the writer.
+pub(super) fn written_again(folder: &Path, name: &str, text: &str) -> (Scene, Scene, Vec<String>) {
+    let (before, messages) = read_in(folder, name, text);
+    let before = before.unwrap_or_else(|| panic!("{messages:?}"));
+    let after_name = format!("again.{}", name.rsplit('.').next().unwrap());
+    let messages = write_in(folder, &after_name, &before);
+    let (after, read) = read_in(folder, &after_name, std::fs::read(folder.join(&after_name)).unwrap());
+    let after = after.unwrap_or_else(|| panic!("{read:?}"));
+    assert!(!read.iter().any(|line| line.contains("warning")), "{read:?}");
+    (before, after, messages)
+}
+
+/// Writes a scene and the files beside it in a folder. Returns the messages of the writer.
+pub(super) fn write_in(folder: &Path, name: &str, scene: &Scene) -> Vec<String> {
+    let source = FolderSource::new(folder);
+    let (normals, mut diagnostics) = (MeshNormals::Flat, Diagnostics::default());
+    let context = WriteContext { name, source: &source, normals, srgb_textures: true, memory: u64::MAX };
+    let format = crate::scene::scene_format_for(name).unwrap();
+    let written = format.write.unwrap()(scene, &context, &mut diagnostics);
+    for (path, bytes) in written.files.into_iter().chain([(name.to_string(), written.bytes)]) {
+        let path = folder.join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    assert!(diagnostics.iter().all(|found| found.code == "NO_COUNTERPART"), "{diagnostics:?}");
+    diagnostics.iter().map(|found| found.message.clone()).collect()
+}
+
+/// Asserts that two values have the same parts, and numbers that differ by at most `tolerance`.
+pub(super) fn assert_near(what: &str, before: &impl Serialize, after: &impl Serialize, tolerance: f64) {
+    fn differs(a: &Value, b: &Value, tolerance: f64) -> bool {
+        match (a, b) {
+            (Value::Number(a), Value::Number(b)) => (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() > tolerance,
+            (Value::Array(a), Value::Array(b)) => {
+                a.len() != b.len() || a.iter().zip(b).any(|(a, b)| differs(a, b, tolerance))
+            }
+            (Value::Object(a), Value::Object(b)) => {
+                a.len() != b.len() || a.iter().any(|(key, a)| b.get(key).is_none_or(|b| differs(a, b, tolerance)))
+            }
+            (a, b) => a != b,
+        }
+    }
+    let [a, b] = [serde_json::to_value(before).unwrap(), serde_json::to_value(after).unwrap()];
+    assert!(!differs(&a, &b, tolerance), "{what}:\n{a}\n{b}");
+}
+
+/// Returns the corners of all triangles of a scene in world space.
+pub(super) fn triangles(scene: &Scene) -> Vec<[DVec3; 3]> {
+    let context = (FolderSource::new("."), Diagnostics::default());
+    let (source, mut diagnostics) = context;
+    let context =
+        WriteContext { name: "a", source: &source, normals: MeshNormals::Flat, srgb_textures: true, memory: u64::MAX };
+    let mut export = crate::export::Export::new(scene, &context, &mut diagnostics);
+    let mut all = Vec::new();
+    for shape in export.shapes("test") {
+        let data = export.triangles(&shape, "test").unwrap();
+        let data = crate::export::shape::transformed(data, &shape.to_world);
+        all.extend(data.triangles.iter().map(|corners| corners.map(|i| data.positions[i as usize].as_dvec3())));
+    }
+    all
 }

@@ -12,7 +12,9 @@ use durer_formats::course::{self, Guess, Hint, ReadOptions};
 use durer_formats::folder::FolderSource;
 use durer_formats::gzip::{decompress, is_gzip};
 use durer_formats::json;
-use durer_formats::scene::{ReadInput, WriteContext, find_scene_format, other_format, read_model, scene_format_for};
+use durer_formats::scene::{
+    ReadInput, WriteContext, Written, find_scene_format, other_format, read_model, scene_format_for,
+};
 use durer_render::compile::{AccelKind, AssetCache, Resources, compile};
 use durer_render::threads;
 use durer_render::world::World;
@@ -264,9 +266,15 @@ impl LoadedScene {
 
     /// Converts the scene to the format that the extension of `name` selects. Returns `None` if the
     /// scene cannot be written. Adds a warning for everything that the format cannot express.
-    pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
+    pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Written> {
         let write = scene_format_for(name)?.write?;
-        let output = WriteContext { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
+        let output = WriteContext {
+            name,
+            source: &self.source,
+            normals: self.rules.mesh_normals,
+            srgb_textures: self.rules.srgb_textures,
+            memory: self.memory,
+        };
         Some(write(&self.scene, &output, diagnostics))
     }
 

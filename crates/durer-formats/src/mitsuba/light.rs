@@ -29,7 +29,7 @@ const STEPS: [u32; 2] = [360, 720];
 
 /// Minimum height in pixels at which a picture is used without resampling. Mitsuba places the first
 /// and last rows exactly at the poles. At this height or above, the difference is negligible.
-const FINE_ROWS: u32 = 256;
+pub(super) const FINE_ROWS: u32 = 256;
 
 /// Maximum height in pixels of a resampled environment map.
 const MAX_ROWS: u32 = 2048;

@@ -23,6 +23,7 @@ mod state;
 mod tessellate;
 mod texture;
 mod transform;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -41,7 +42,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     extensions: &["xml"],
     recognise,
     read,
-    write: None,
+    write: Some(write::write),
     up: Axis::Y,
     is_complete_scene: true,
     light_hint: Some(

@@ -48,6 +48,16 @@ impl Boundary {
         if fades { below } else { (below - self.reflectance_difference / self.transmittance).max(0.0) }
     }
 
+    /// Returns the colour in Mitsuba for which [`Boundary::base`] returns `base`.
+    pub fn color(&self, base: f32, fades: bool) -> f32 {
+        let (mut low, mut high) = (0.0, 2.0);
+        for _ in 0..32 {
+            let middle = 0.5 * (low + high);
+            if self.base(middle, fades) < base { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
     /// Returns the mean radiance of a diffuse base seen through the boundary in Mitsuba, divided by
     /// its value in Dürer. In Mitsuba, light is lost each time that it crosses the boundary, both
     /// on the way in and on the way out. If bounces change the colour, `left` is the fraction of

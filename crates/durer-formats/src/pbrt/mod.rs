@@ -27,6 +27,7 @@ pub(super) mod state;
 mod surfaces;
 mod texture;
 mod transform;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -46,7 +47,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     extensions: &["pbrt"],
     recognise,
     read,
-    write: None,
+    write: Some(write::write),
     up: Axis::Y,
     is_complete_scene: true,
     light_hint: Some(

@@ -40,6 +40,21 @@ described! {
     }
 }
 
+impl Fade {
+    /// Fraction of the light at a fraction `s` between the cosines of the two angles.
+    ///
+    /// Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1, and
+    /// 3rd edition, section 12.3.1.
+    pub fn at(self, s: f32) -> f32 {
+        s * s
+            * match self {
+                Fade::Squared => 1.0,
+                Fade::Smooth => 3.0 - 2.0 * s,
+                Fade::Fourth => s * s,
+            }
+    }
+}
+
 impl SpotLight {
     /// Cosines of the angles at which the cone ends and the fade starts.
     fn cosines(&self) -> [f32; 2] {
@@ -71,15 +86,7 @@ impl Illuminate for SpotLight {
             true => ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0),
             false => f32::from(cosine >= outer),
         };
-        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1,
-        // and 3rd edition, section 12.3.1.
-        let share = share
-            * share
-            * match self.fade {
-                Fade::Squared => 1.0,
-                Fade::Smooth => 3.0 - 2.0 * share,
-                Fade::Fourth => share * share,
-            };
+        let share = self.fade.at(share);
         LightLiSample { to_light, distance, color: self.color * (share / (distance * distance)) }
     }
 

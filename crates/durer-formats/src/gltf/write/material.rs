@@ -215,12 +215,12 @@ impl Writer<'_> {
         }
         let Some((_, extension, key, channel)) = PICTURES.into_iter().find(|row| row.0 == field) else { return false };
         let Some(value) = extensions.get_mut(extension) else { return false };
-        let TextureImage { bytes, mapping } = self.picture(name);
+        let TextureImage { bytes, mapping } = self.export.picture(name);
         let fits = match field {
             // The rotation must be in the same texture as the anisotropy strength.
             "specular_anisotropy_texture" => {
                 let turned = TextureImage { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
-                m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
+                m.specular_rotation_texture.as_ref().is_some_and(|turns| self.export.picture(turns) == turned)
             }
             "thin_film_thickness_texture" => mapping.range[1] == 1.0,
             _ => mapping.range == [0.0, 1.0],

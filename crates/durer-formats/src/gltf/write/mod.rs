@@ -11,10 +11,10 @@ mod picture;
 #[cfg(test)]
 mod tests;
 
-use crate::gzip::read_decompressed;
-use crate::model::WriteContext;
+use crate::export::Export;
+use crate::model::{WriteContext, Written};
 use base64::Engine;
-use durer_diag::{Diagnostic, Diagnostics};
+use durer_diag::Diagnostics;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::describe::DescribedKind;
 use durer_scene::dialect::Dialect;
@@ -26,14 +26,12 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f32::consts::PI;
-use std::sync::Arc;
 
 /// Writer that converts one scene to glTF, and collects its JSON arrays and its binary buffer.
 struct Writer<'a> {
     scene: &'a Scene,
     output: &'a WriteContext<'a>,
-    diagnostics: &'a mut Diagnostics,
-    reported: BTreeSet<String>,
+    export: Export<'a>,
     buffer: Vec<u8>,
     /// Top-level arrays of the glTF file, by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
@@ -49,12 +47,11 @@ struct Writer<'a> {
 }
 
 /// Encodes a scene as binary glTF if the file name ends in `.glb`, and otherwise as JSON.
-pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diagnostics) -> Vec<u8> {
+pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diagnostics) -> Written {
     let mut writer = Writer {
         scene,
         output,
-        diagnostics,
-        reported: BTreeSet::new(),
+        export: Export::new(scene, output, diagnostics),
         buffer: Vec::new(),
         lists: BTreeMap::new(),
         extensions: BTreeSet::new(),
@@ -74,16 +71,13 @@ pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diag
         roots.extend(writer.light(&light.value));
     }
     writer.surroundings();
-    writer.file(&roots)
+    Written { bytes: writer.file(&roots), files: Vec::new() }
 }
 
 impl Writer<'_> {
     /// Warns about content that is lost or changed, once for each message.
     fn warn_lost(&mut self, message: impl Into<String>) {
-        let message = message.into();
-        if self.reported.insert(message.clone()) {
-            self.diagnostics.push(Diagnostic::warning(message).code("NO_COUNTERPART"));
-        }
+        self.export.warn_lost(message);
     }
 
     /// Appends a value to a top-level array and returns its index.
@@ -126,7 +120,7 @@ impl Writer<'_> {
             }
             ObjectKind::Mesh(mesh) => {
                 let name = mesh.obj_file.path.clone();
-                let data = self.mesh_data(&name)?;
+                let data = self.export.mesh_data(&name)?;
                 self.shown(name, &data, object.material)
             }
             ObjectKind::Primitive(primitive) => {
@@ -147,20 +141,6 @@ impl Writer<'_> {
     fn shown(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
         let mesh = self.mesh(name, data, material)?;
         Some(self.add("nodes", json!({ "mesh": mesh })))
-    }
-
-    /// Returns the mesh that an asset or a file contains.
-    fn mesh_data(&mut self, name: &str) -> Option<Arc<MeshData>> {
-        if let Some(data) = self.scene.assets.meshes.get(name) {
-            return Some(data.clone());
-        }
-        let bytes = read_decompressed(self.output.source, name).ok()?;
-        let mut own = Diagnostics::default();
-        let data = crate::read_mesh(&bytes, 0, name, &mut own);
-        if data.is_none() {
-            self.warn_lost(format!("the mesh `{name}` cannot be read"));
-        }
-        data.map(Arc::new)
     }
 
     /// Writes the node of the camera and returns its index.

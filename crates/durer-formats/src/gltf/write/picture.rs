@@ -14,7 +14,7 @@ impl Writer<'_> {
     /// the picture.
     pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
         let name = name?;
-        let picture = self.picture(name);
+        let picture = self.export.picture(name);
         let info = match self.textures.get(&name.path) {
             Some(cached) => cached.clone(),
             None => {
@@ -24,13 +24,6 @@ impl Writer<'_> {
             }
         };
         Some((info?, picture.mapping))
-    }
-
-    /// Returns the picture that a material names, which is an asset or a file with the default
-    /// mapping.
-    pub(super) fn picture(&self, name: &FileName) -> TextureImage {
-        let file = || TextureImage { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
-        self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
     }
 
     fn info(&mut self, picture: &TextureImage) -> Option<Value> {
@@ -79,10 +72,7 @@ impl Writer<'_> {
         if let Some(cached) = self.images.get(name) {
             return *cached;
         }
-        let found = match bytes {
-            PictureBytes::Memory(_, bytes) => Some(bytes.clone()),
-            PictureBytes::File(name) => self.output.source.read(name).ok(),
-        };
+        let found = self.export.picture_bytes(bytes);
         let memory = self.output.memory;
         let Some((bytes, kind)) = found.and_then(|bytes| known_to_gltf(bytes, name, memory)) else {
             self.warn_lost(format!("the picture `{name}` cannot be read"));

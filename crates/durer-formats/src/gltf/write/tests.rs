@@ -23,9 +23,10 @@ fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());
     let mut messages = Diagnostics::default();
-    let output = WriteContext { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
+    let output =
+        WriteContext { name, source: &source, normals: MeshNormals::Flat, srgb_textures: false, memory: u64::MAX };
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();
-    let bytes = write(scene, &output, &mut messages);
+    let bytes = write(scene, &output, &mut messages).bytes;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let scene_defaults = SceneDefaults { convert_only: true, ..SceneDefaults::default() };
     let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
