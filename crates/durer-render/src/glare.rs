@@ -3,11 +3,11 @@
 use crate::integrator::{Integrate as _, Path};
 use crate::world::World;
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::math::{Color, Ray64, Vec3};
+use durer_scene::math::{Color, Ray64, Vec3, fp};
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{LN_10, PI};
 
 /// Number of rays that look for luminaires. Each ray stands for 3e-6 sr, so that 100 rays hit a
 /// luminaire of the least size for which the rating is defined, 3e-4 sr.
@@ -72,8 +72,8 @@ pub fn glare(path: &Path, observer: &Observer, options: &GlareOptions) -> Glare 
     let sources = sources(path.world, observer, options.lumens);
     let (background, background_error) = background(path, observer, options);
     let sum: f64 =
-        sources.iter().map(|source| source.solid_angle * (source.luminance / source.position_index).powi(2)).sum();
-    let ugr = (sum > 0.0 && background > 0.0).then(|| 8.0 * (0.25 / background * sum).log10());
+        sources.iter().map(|source| source.solid_angle * square(source.luminance / source.position_index)).sum();
+    let ugr = (sum > 0.0 && background > 0.0).then(|| rating(0.25 / background * sum));
     Glare { ugr, background, background_error, sources }
 }
 
@@ -103,7 +103,7 @@ fn sources(world: &World, observer: &Observer, lumens: Color) -> Vec<GlareSource
         let (count, light, near) = seen.entry(object).or_default();
         *count += 1.0;
         *light += luminance;
-        *near += position_index.powi(-2);
+        *near += 1.0 / square(position_index);
     }
     let angle = 2.0 * PI / f64::from(RAYS);
     let source = |(object, (count, light, near)): (u32, (f64, f64, f64))| GlareSource {
@@ -132,7 +132,7 @@ fn background(path: &Path, observer: &Observer, options: &GlareOptions) -> (f64,
     let values: Vec<f64> = (0..options.samples).into_par_iter().map(sample).collect();
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n * (n - 1.0).max(1.0));
+    let variance = values.iter().map(|value| square(value - mean)).sum::<f64>() / (n * (n - 1.0).max(1.0));
     (mean, variance.sqrt())
 }
 
@@ -144,18 +144,31 @@ fn position_index(observer: &Observer, dir: Vec3) -> f64 {
     let up = right.cross(sight);
     let (ahead, across, above) = (dir.dot(sight), dir.dot(right), dir.dot(up));
     if above < 0.0 {
-        let ratio = across.hypot(above) / ahead.max(1e-6);
+        let ratio = (square(across) + square(above)).sqrt() / ahead.max(1e-6);
         let slope = if ratio < 0.6 { 0.8 } else { 1.2 };
         // Levin's formula ends at 16, and so does this one.
         return (1.0 + slope * ratio).min(MAX_POSITION_INDEX);
     }
     // Angle of the plane through the source and the line of sight from the vertical, and angle
     // between both, in degrees.
-    let alpha = across.abs().atan2(above).min(FRAC_PI_2).to_degrees();
-    let beta = ahead.clamp(-1.0, 1.0).acos().to_degrees();
-    let linear = 35.2 - 0.31889 * alpha - 1.22 * (-2.0 * alpha / 9.0).exp();
+    let alpha = fp::atan2_f64(across.abs(), above).to_degrees();
+    let beta = fp::atan2_f64((square(across) + square(above)).sqrt(), ahead).to_degrees();
+    let linear = 35.2 - 0.31889 * alpha - 1.22 * exp(-2.0 * alpha / 9.0);
     let quadratic = 21.0 + 0.26667 * alpha - 0.002963 * alpha * alpha;
-    (1e-3 * linear * beta + 1e-5 * quadratic * beta * beta).exp().min(MAX_POSITION_INDEX)
+    exp(1e-3 * linear * beta + 1e-5 * quadratic * beta * beta).min(MAX_POSITION_INDEX)
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+fn exp(x: f64) -> f64 {
+    f64::from(fp::exp(x as f32))
+}
+
+/// Returns the rating for the sum over the luminaires, which is relative to the background.
+fn rating(sum: f64) -> f64 {
+    8.0 * f64::from(fp::ln(sum as f32)) / LN_10
 }
 
 /// Largest value in the tables of the position index.
@@ -203,9 +216,9 @@ mod tests {
             let part = |i: u16| (f32::from(i) + 0.5) / 256.0;
             let direction = |i, j| cone.to_world(warp::polar(1.0 - (1.0 - least) * part(i), part(j)));
             let indices = (0..256).flat_map(|i| (0..256).map(move |j| (i, j)));
-            let weights = indices.map(|(i, j)| position_index(&AHEAD, direction(i, j)).powi(-2));
+            let weights = indices.map(|(i, j)| 1.0 / square(position_index(&AHEAD, direction(i, j))));
             let weight = weights.sum::<f64>() / 65536.0;
-            let expected = 8.0 * (0.25 / background * solid_angle * 2000.0_f64.powi(2) * weight).log10();
+            let expected = rating(0.25 / background * solid_angle * square(2000.0) * weight);
             let rated = rated(&ball(center, radius as f32), &AHEAD);
             let [source] = rated.sources[..] else { panic!("{rated:?}") };
             assert!((source.luminance - 2000.0).abs() < 0.01, "{source:?}");

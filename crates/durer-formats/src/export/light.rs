@@ -10,7 +10,7 @@ use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::scene::{Background, PictureBytes};
 use durer_scene::spectrum::{Curve, illuminants};
 use durer_scene::texture::Environment;
-use durer_scene::texture::sky::{Sky, environment_map};
+use durer_scene::texture::sky::environment_map;
 use std::f32::consts::PI;
 
 /// Width of the picture of a sky, as in Dürer.
@@ -47,13 +47,13 @@ impl Export<'_> {
         let lights = self.scene.lights.iter().flatten();
         let mut lamps: Vec<Lamp> = lights.filter_map(|light| self.lamp(&light.value, program)).collect();
         let background = &self.scene.background;
-        if let Some(to_sun) = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night()) {
+        if let (Some(sky), Some(to_sun)) = (background.clear_sky(), background.sun()) {
             self.warn_extent(program);
             let (turn, scale) = background.environment_transform();
             let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
             let [sin, cos] = [sin, cos].map(|x| x as f32);
             let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
-            let irradiance = scale * Sky::new(to_sun, background.turbidity()).sun();
+            let irradiance = scale * sky.sun();
             lamps.push(Lamp::Distant { direction: -way.normalize_or(Vec3::Y), irradiance });
         }
         lamps
@@ -137,16 +137,9 @@ impl Export<'_> {
         if background.is_night() {
             return None;
         }
-        let texels = match (background.cie_sky(), background.sun()) {
+        let texels = match (background.cie_sky(), background.clear_sky()) {
             (Some(sky), _) => environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
-            (None, Some(sun)) => {
-                let sky = Sky::new(sun, background.turbidity());
-                let sky = match background.ground_reflectance {
-                    Some(share) => sky.with_ground(share),
-                    None => sky,
-                };
-                environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir))
-            }
+            (None, Some(sky)) => environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
             (None, None) => {
                 // With path tracing, a scene of Dürer's own that says nothing is black.
                 let is_silent = self.scene.up.is_none()
