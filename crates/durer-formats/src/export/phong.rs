@@ -88,7 +88,8 @@ fn highlight_albedo(exponent: f32, phong: bool) -> f32 {
             sum += if density > 0.0 { value.max_element() / density } else { 0.0 };
         }
     }
-    sum / f32::from(STEPS).powi(3)
+    let steps = f32::from(STEPS);
+    sum / (steps * steps * steps)
 }
 
 /// Returns the mean albedo over all directions of facets that reflect all light.

@@ -13,6 +13,9 @@ use durer_scene::texture::{Mapping, Wrap};
 /// Thickness of a coat, so thin that light crosses it without loss.
 const THIN: f32 = 1e-6;
 
+/// Normal map, and bump map with the height of white.
+type Relief<'a> = (Option<&'a TextureImage>, Option<(&'a TextureImage, f32)>);
+
 impl Writer<'_> {
     /// Writes a surface as a named material.
     pub(super) fn material(&mut self, name: &str, surface: &Surface) {
@@ -85,12 +88,7 @@ impl Writer<'_> {
         self.named += &line;
     }
 
-    fn opaque(
-        &mut self,
-        directive: Directive,
-        opaque: &Opaque,
-        relief: Option<(Option<&TextureImage>, Option<(&TextureImage, f32)>)>,
-    ) -> Directive {
+    fn opaque(&mut self, directive: Directive, opaque: &Opaque, relief: Option<Relief>) -> Directive {
         let directive = match opaque {
             Opaque::Diffuse(paint) => {
                 self.paint(directive.string("type", "diffuse"), "reflectance", paint, "color", |color| color)
