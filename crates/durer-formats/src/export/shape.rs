@@ -206,8 +206,9 @@ impl<'a> Export<'a> {
 /// Returns a square on a plane, large enough to look infinite, in the space of the plane. `radius`
 /// is a length in the world.
 fn square(plane: &Plane, radius: f32, to_world: &DAffine3) -> MeshData {
-    let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(DVec3::length);
-    let scale = x.min(y).min(z).max(1e-12) as f32;
+    let axes = to_world.matrix3;
+    let shortest = axes.x_axis.length().min(axes.y_axis.length()).min(axes.z_axis.length());
+    let scale = shortest.max(1e-12) as f32;
     let half = PLANE_SCALE * radius / scale;
     let (normal, offset) = (plane.normal.normalize_or(Vec3::Y), plane.offset / plane.normal.length());
     let (x, y) = normal.any_orthonormal_pair();

@@ -13,7 +13,7 @@ use durer_scene::texture::{Mapping, Wrap};
 /// Thickness of a coat, so thin that light crosses it without loss.
 const THIN: f32 = 1e-6;
 
-/// Picture of the normals, and picture of the heights with their scale.
+/// Normal map, and bump map with the height of white.
 type Relief<'a> = (Option<&'a TextureImage>, Option<(&'a TextureImage, f32)>);
 
 impl Writer<'_> {
