@@ -1,0 +1,99 @@
+"""Compares renders of the same scenes by Dürer and Mitsuba 3.
+
+    python compare.py DURER [--only TEXT] [--table FILE] [--keep FOLDER]
+
+Both programs read the same XML file, and render it several times with different seeds until the
+standard error of the ratio of the mean is below 0.15 %. A scene agrees if the mean of each channel
+agrees within 0.5 % or three standard errors, and if no block of 8 x 8 pixels differs: a block
+differs if its mean is off by more than 0.5 % and its Student's t, as a normal deviate, exceeds the
+two-sided limit for a significance of 0.01 over all blocks and channels (Sidak's correction). What
+Dürer warns of must be what the scene says it warns of.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import tempfile
+import time
+
+import mitsuba as mi
+import numpy as np
+
+import assets
+import own
+from judge import RUNS, Judgement
+from picture import read_pfm
+from scene import Verdict, scenes
+
+SAMPLES = 16
+MOST_RUNS = 160
+ERROR = 0.0015
+
+
+def render_ours(program, scene, path, seed, samples):
+    """Returns the picture and the warnings."""
+    picture = path.with_suffix(".pfm")
+    command = [program, "render", path, "-o", picture, "--samples", str(samples), "--filter", "box", "--seed", str(seed), "--restart"]
+    done = subprocess.run(command + scene.options, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr.strip())
+    warnings = re.findall(r"^warning(?:\[.*?\])?: (.*)", done.stderr, re.MULTILINE)
+    return read_pfm(picture), warnings
+
+
+def compare(program, scene, folder):
+    path = folder / f"{scene.slug}.{scene.extension}"
+    path.write_text(scene.text)
+    began = time.time()
+    loaded = scene.load(mi, path)
+    ours, theirs, warnings, samples = [], [], [], scene.samples or SAMPLES
+    judgement = None
+    while judgement is None or (judgement.error > ERROR and len(ours) < MOST_RUNS):
+        for _ in range(RUNS):
+            seed = len(ours)
+            picture, warnings = render_ours(program, scene, path, seed, samples)
+            ours.append(picture)
+            theirs.append(np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)[..., :3])
+        judgement = Judgement(np.array(ours), np.array(theirs))
+    return Verdict(scene, judgement, warnings, time.time() - began), np.array(ours), np.array(theirs)
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("program")
+    arguments.add_argument("--only", default="")
+    arguments.add_argument("--table", type=pathlib.Path)
+    arguments.add_argument("--keep", type=pathlib.Path)
+    given = arguments.parse_args()
+    # This variant needs no compiler.
+    mi.set_variant("scalar_rgb")
+    mi.set_log_level(mi.LogLevel.Error)
+    began = time.time()
+    with tempfile.TemporaryDirectory() as folder:
+        folder = given.keep or pathlib.Path(folder)
+        folder.mkdir(exist_ok=True)
+        assets.write(folder)
+        verdicts = []
+        for scene in [*scenes(), *own.scenes()]:
+            if given.only not in f"{scene.kind}: {scene.name}":
+                continue
+            try:
+                verdict, ours, theirs = compare(given.program, scene, folder)
+            except RuntimeError as error:
+                verdict = Verdict(scene, None, [str(error)], 0)
+            else:
+                if given.keep:
+                    np.savez(folder / f"{scene.slug}.npz", ours=ours, theirs=theirs)
+            print(verdict.line(), flush=True)
+            verdicts.append(verdict)
+    text = Verdict.table(verdicts, mi.__version__, mi.variant())
+    print(text)
+    print(f"{(time.time() - began) / 60:.1f} minutes")
+    if given.table:
+        given.table.write_text(text)
+    raise SystemExit(0 if all(verdict.expected for verdict in verdicts) else 1)
+
+
+if __name__ == "__main__":
+    main()
