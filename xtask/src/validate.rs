@@ -17,7 +17,7 @@ const PEERS: &str = "\n## The same files in Mitsuba\n\n\
     `cargo xtask peers` renders small Mitsuba files with Dürer and with Mitsuba 3, and sixteen scenes that are written for each of\n\
     the two. A scene agrees if the mean of each channel agrees within 0.5 % or three standard errors, and if no block of 8 x 8\n\
     pixels differs by more than 0.5 % and by more than its noise explains (Student's t-test at a significance of 0.01 over all\n\
-    blocks and channels, Šidák correction). Both render until the standard error of the mean is below 0.15 %. The scenes are in\n\
+    blocks and channels, Šidák correction). Both render until the standard error of the mean is below 0.2 %. The scenes are in\n\
     `xtask/src/peers/kinds`, one file per kind.\n\n";
 
 /// Text of docs/validation.md while it is written, and the number of wrong rows.

@@ -23,7 +23,7 @@ class Scene:
 
     The names of the first fields are those of `scene.Scene`.
     """
-    kind, extension, samples = "Dürer's language", "txt", 0
+    kind, extension, samples = "Dürer's language", "txt", 128
     warns, differs, mitsuba_is_wrong = (), "", ""
 
     def __init__(self, name, bounces=6, volumes=False, eye=(0, 0, 3.9), direction=(0, 0, -1), fov=39):
@@ -52,6 +52,7 @@ class Scene:
         return ["--size", f"{SIZE}x{SIZE}", "--integrator", "path", "--bounces", str(self.bounces)]
 
     def load(self, mitsuba, path):
+        mitsuba.set_variant("scalar_rgb")
         return mitsuba.load_dict(self.theirs)
 
     @property

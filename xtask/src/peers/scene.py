@@ -17,7 +17,7 @@ KINDS = [
 class Scene:
     """A scene in Mitsuba's XML.
 
-    `warns` has a part of each warning that Dürer prints. `differs` says why Dürer differs, and
+    `variant` is Mitsuba's. `warns` has a part of each warning that Dürer prints. `differs` says why Dürer differs, and
     `mitsuba_is_wrong` why Mitsuba does.
     """
     kind: str
@@ -27,6 +27,7 @@ class Scene:
     differs: str = ""
     mitsuba_is_wrong: str = ""
     samples: int = 0
+    variant: str = "scalar_rgb"
     options: list = dataclasses.field(default_factory=list)
     extension: str = "xml"
 
@@ -35,6 +36,7 @@ class Scene:
         return re.sub("[^a-z0-9]+", "-", f"{self.kind} {self.name}".lower()).strip("-")
 
     def load(self, mitsuba, path):
+        mitsuba.set_variant(self.variant)
         return mitsuba.load_file(str(path))
 
 
@@ -89,7 +91,7 @@ class Verdict:
                 f"{found}{mark}{'; ' + note if note else ''}{warnings} | {self.seconds:.1f} s |")
 
     @staticmethod
-    def table(verdicts, version, variant):
+    def table(verdicts, version):
         """Returns the part of docs/validation.md that this program writes."""
         kinds = list(dict.fromkeys(verdict.scene.kind for verdict in verdicts))
         lines = ["| kind | scenes | agree | largest difference of a mean | scene |", "| --- | ---: | ---: | ---: | --- |"]
@@ -101,7 +103,7 @@ class Verdict:
                 lines.append(f"| {kind} | {len(of)} | {len(good)} | {100 * (worst.judgement.ratio - 1):+.2f} % | {worst.scene.name} |")
         off = [verdict for verdict in verdicts if not verdict.agrees]
         good = len(verdicts) - len(off)
-        text = f"{good} of {len(verdicts)} scenes agree (Mitsuba {version}, {variant}).\n\n" + "\n".join(lines) + "\n"
+        text = f"{good} of {len(verdicts)} scenes agree (Mitsuba {version}).\n\n" + "\n".join(lines) + "\n"
         if off:
             text += "\nScenes that differ:\n\n| scene | mean, ours over theirs | blocks that differ | why |\n| --- | ---: | ---: | --- |\n"
         for verdict in off:

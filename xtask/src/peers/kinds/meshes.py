@@ -33,7 +33,7 @@ def scenes():
     yield "flipped normals", room(mesh("ball.ply", x_=-0.75, flip_normals=True), mesh("bare-ball.ply", bsdf("twosided", RED), x_=0.75, flip_normals=True))
     yield "smooth metal and glass", room(
         mesh("ball.ply", bsdf("roughconductor", distribution="ggx", material="Au", alpha=0.2), x_=-0.75), mesh("ball.ply", bsdf("dielectric"), x_=0.75))
-    yield "flat glass", room(mesh("block.ply", bsdf("dielectric"), scale=(0.5, 0.4, 0.6)))
+    yield "flat glass", room(mesh("block.ply", bsdf("dielectric"), scale=(0.5, 0.4, 0.6), face_normals=True))
     yield "colours of vertices", room(mesh("colored-ball.ply", colors))
     yield "scaled colours of vertices", room(mesh("colored-ball.ply", bsdf("diffuse", reflectance=texture(
         "mesh_attribute", VERTEX_COLOR, scale=0.5))))
