@@ -23,8 +23,8 @@ impl Boundary {
     /// Computes the mean values. `roughness` is the square root of alpha.
     pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
         if roughness == 0.0 {
-            let ([reflected, all], [inside, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
-            return Boundary { index, through: all - reflected, inside, transmittance: None };
+            let [outside, inside] = [index, 1.0 / index].map(mean_reflectance);
+            return Boundary { index, through: 1.0 - outside, inside, transmittance: None };
         }
         let theirs = |index: f32| means(index, roughness * roughness, beckmann);
         let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
@@ -50,6 +50,14 @@ impl Boundary {
         let through = self.through / self.index;
         self.transmittance.map_or(1.0, |ours| through * through / (1.0 - self.inside) / ours)
     }
+}
+
+/// Returns the reflectance of a smooth boundary for light from all directions.
+fn mean_reflectance(eta: f32) -> f32 {
+    const STEPS: u32 = 1024;
+    // The square of the cosine is uniform, as is the light that falls on a surface.
+    let at = |i: u32| fresnel::dielectric(((i as f32 + 0.5) / STEPS as f32).sqrt(), eta);
+    (0..STEPS).map(at).sum::<f32>() / STEPS as f32
 }
 
 /// Computes the mean albedos as [`single_means`] does, but with Mitsuba's separable masking, which
@@ -125,8 +133,8 @@ mod tests {
         let smooth = Boundary::new(1.5, 0.0, false);
         let sum: f32 = (0..200).map(|bounce| 0.6 * (0.6 * smooth.inside).powi(bounce)).sum();
         assert!((smooth.faded(0.6) - sum * (1.0 - smooth.inside)).abs() < 1e-5);
-        // The mean internal reflectance of a boundary of index 1.5 is 0.5963 (d'Eon's fit: 0.596).
-        assert!((smooth.inside - 0.5963).abs() < 5e-3, "{}", smooth.inside);
+        // By conservation of étendue, 1 - inside = (1 - outside) / index^2; `through` is 1 - outside.
+        assert!((1.0 - smooth.inside - smooth.through / 2.25).abs() < 1e-3, "{}", smooth.inside);
         assert_eq!((smooth.below(), smooth.faded(1.0)), (1.0, 1.0));
     }
 }

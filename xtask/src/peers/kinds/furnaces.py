@@ -9,9 +9,13 @@ def furnace(material):
     return stage(constant(0.5), ball(material, y=0.45, radius=1.1))
 
 
+# Dürer says so where the whole picture has one colour, as it should.
+EVEN = dict(warns=("the picture has only one colour", "the whole picture is uniformly"))
+
+
 def scenes():
-    yield "matte", furnace(bsdf("twosided", x.diffuse(1.0)))
-    yield "mirror", furnace(bsdf("conductor", material="none"))
+    yield "matte", furnace(bsdf("twosided", x.diffuse(1.0))), EVEN
+    yield "mirror", furnace(bsdf("conductor", material="none")), EVEN
     for alpha in (0.1, 0.4, 0.8):
         yield f"metal, alpha {alpha}", furnace(bsdf("roughconductor", distribution="ggx", material="none", alpha=alpha))
     for u, v in ((0.05, 0.3), (0.6, 0.1), (0.3, 0.9)):
