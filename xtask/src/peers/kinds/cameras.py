@@ -34,7 +34,8 @@ def scenes():
     yield "thin lens", room(sensor(kind="thinlens", aperture_radius=0.15, focus_distance=4.0))
     yield "thin lens, near focus", room(sensor(kind="thinlens", aperture_radius=0.3, focus_distance=2.5))
     yield "orthographic", room(sensor(kind="orthographic", to_world=look(("scale", (1.6, 1.6, 1)))))
-    yield "orthographic, unequal scale", room(sensor(kind="orthographic", to_world=look(("scale", (1.6, 1.0, 1)))))
+    yield "orthographic, unequal scale", room(sensor(kind="orthographic", to_world=look(("scale", (1.6, 1.0, 1))))), dict(
+        warns=("a scale of an orthographic camera that differs",), differs="pixels of Dürer's camera are square")
     yield "orthographic, clipped", room(sensor(kind="orthographic", to_world=look(("scale", (1.6, 1.6, 1))), near_clip=3.5, far_clip=5.0))
     yield "crop", room(sensor(film_parts=crop(offset_x=10, offset_y=6, width=40, height=32)))
     yield "crop, thin lens", room(sensor(kind="thinlens", aperture_radius=0.15, focus_distance=4.0, film_parts=crop(offset_x=24, offset_y=16, width=40, height=32)))

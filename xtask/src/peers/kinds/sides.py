@@ -36,7 +36,7 @@ def scenes():
     yield "inside a shining sphere", stage(shape("sphere", area(0.6, 0.5, 0.4), radius=6.0, flip_normals=True), ball(RED), floor())
     yield "shining sphere seen from outside", room(ball(area(1, 2, 1), x=-0.75, flip_normals=True), ball(RED, x=0.75))
     yield "mirrored sphere", room(shape("sphere", RED, transform(("scale", (-0.6, 0.6, 0.6)), ("translate", (-0.75, 0.6, 0)))),
-                                  shape("sphere", area(2, 1, 1), transform(("scale", (0.5, -0.6, 0.6)), ("translate", (0.75, 0.6, 0)))))
+                                  shape("sphere", area(2, 1, 1), transform(("scale", (0.6, -0.6, 0.6)), ("translate", (0.75, 0.6, 0)))))
     yield "glass sphere with flipped normals", room(ball(bsdf("dielectric"), flip_normals=True))
     yield "matte sphere with flipped normals", room(ball(RED, x=-0.75, flip_normals=True), ball(bsdf("twosided", RED, BLUE), x=0.75, flip_normals=True))
     yield "no material", room(ball(x=-0.75), shape("cube", transform(("scale", (0.4, 0.4, 0.4)), ("rotate", (0, 1, 0), 30), ("translate", (0.75, 0.4, 0)))))
