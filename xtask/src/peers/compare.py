@@ -12,6 +12,7 @@ Dürer warns of must be what the scene says it warns of.
 
 import argparse
 import concurrent.futures
+import multiprocessing
 import pathlib
 import re
 import subprocess
@@ -72,6 +73,11 @@ def all_scenes():
     return [*scenes(), *own.scenes()]
 
 
+def workers(count):
+    # Mitsuba's threads do not survive a fork.
+    return concurrent.futures.ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
+
+
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("program")
@@ -83,7 +89,7 @@ def main():
     began = time.time()
     listed = list(enumerate(all_scenes()))
     chosen = [(number, scene) for number, scene in listed if re.search(given.only, f"{scene.kind}: {scene.name}")]
-    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
+    with tempfile.TemporaryDirectory() as folder, workers(given.jobs) as pool:
         folder = given.keep or pathlib.Path(folder)
         folder.mkdir(exist_ok=True)
         assets.write(folder)

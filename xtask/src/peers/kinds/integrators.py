@@ -16,7 +16,7 @@ def scenes():
     shining = ball(area(1, 1.5, 2), radius=0.4, y=0.4, z=1.0)
     for depth in (1, 2, 3, 4):
         yield f"path, depth {depth}", room(BALLS, shining, max_depth=depth)
-    yield "path, depth 0", room(BALLS, shining, max_depth=0), dict(warns=())
+    yield "path, depth 0", room(BALLS, shining, max_depth=0), dict(warns=("the picture is completely black", "paths end at the first surface"))
     yield "volpath, depth 2", room(BALLS, shining, kind="volpath", max_depth=2)
     yield "volpath, depth 3", room(BALLS, shining, kind="volpath", max_depth=3)
     yield "unlimited", room(BALLS)
