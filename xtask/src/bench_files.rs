@@ -109,7 +109,7 @@ fn as_gltf(mesh: &MeshData) -> Result<Vec<u8>> {
     let bytes = (MESH_FORMATS[0].write)(mesh).into();
     let loaded = load_text(Path::new("a.ply"), bytes, &options, &mut files, &mut diagnostics);
     let written = loaded.context("it is read")?.write("a.glb", &mut diagnostics);
-    written.context("glTF is written")
+    Ok(written.context("glTF is written")?.bytes)
 }
 
 fn hills(side: u32) -> MeshData {

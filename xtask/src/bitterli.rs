@@ -1,6 +1,7 @@
 //! `cargo xtask bitterli`: renders Benedikt Bitterli's scenes from pbrt files, compares them with
 //! pictures by his renderer Tungsten, and writes the table in docs/models.md.
 
+use crate::section::Section;
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;
@@ -40,8 +41,7 @@ const CAUSES: [(&str, &str); 3] = [
     ),
 ];
 
-const BEGIN: &str = "<!-- made by cargo xtask bitterli -->\n";
-const END: &str = "<!-- end -->\n";
+const SECTION: Section = Section { page: "docs/models.md", command: "bitterli" };
 
 /// A scene of the table in docs/models.md and how its render compares with Tungsten's picture.
 struct Row {
@@ -94,13 +94,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         writeln!(table, "{line}")?;
     }
     if only.is_none() {
-        let page = crate::root()?.join("docs/models.md");
-        let text = std::fs::read_to_string(&page)?;
-        let (before, rest) =
-            text.split_once(BEGIN).context("docs/models.md lacks the comment that begins the table")?;
-        let (_, after) = rest.split_once(END).context("docs/models.md lacks the comment that ends the table")?;
-        std::fs::write(&page, format!("{before}{BEGIN}\n{table}\n{END}{after}"))?;
-        println!("wrote {}", page.display());
+        SECTION.write(&table)?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -18,6 +18,7 @@ mod many_lights;
 mod page;
 mod peers;
 mod prose;
+mod section;
 mod sheet;
 mod site;
 mod soak;
@@ -83,9 +84,10 @@ const USAGE: &str = "Commands:
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
       Count the mistakes that `durer compare` identifies in wrong pictures by an independent tracer and an independent
       path tracer (--only paths), and the causes that `durer check` identifies in broken scenes.
-  cargo xtask peers [--python PROGRAM] [--samples 1024] [--only TEXT]
-      Compare equal scenes with Mitsuba 3, pixel by pixel. Without --python, installs Mitsuba from the package index into
-      target/peers.
+  cargo xtask peers [--python PROGRAM] [--only TEXT] [--keep FOLDER]
+      Render about 260 scenes with Dürer and Mitsuba 3, compare means and blocks of pixels, and write the table in
+      docs/validation.md. Without --python, installs Mitsuba from the package index into target/peers. --keep: save scenes
+      and pictures in FOLDER.
   cargo xtask peers --time [--python PROGRAM] [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only TEXT]
       CPU time to equal noise, Dürer and Mitsuba (llvm_ad_rgb), in turns.
   cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]

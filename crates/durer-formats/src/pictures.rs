@@ -112,8 +112,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// Creates a linear picture by applying `change` to each texel of another picture. `decode` is
-    /// the transfer function of that picture.
+    /// Creates a linear picture of numbers by applying `change` to each texel of another picture.
+    /// `decode` is the transfer function of that picture.
     pub fn changed(
         &self,
         picture: &TextureImage,
@@ -121,11 +121,23 @@ impl Pictures<'_> {
         decode: fn(u8) -> f32,
         change: impl Fn(Color) -> f32,
     ) -> Option<TextureImage> {
+        self.linear(picture, at, decode, |texel| Color::splat(change(texel)))
+    }
+
+    /// Creates a linear picture by applying `change` to each texel of another picture. `decode` is
+    /// the transfer function of that picture.
+    pub fn linear(
+        &self,
+        picture: &TextureImage,
+        at: Span,
+        decode: fn(u8) -> f32,
+        change: impl Fn(Color) -> Color,
+    ) -> Option<TextureImage> {
         let (path, image) = match &picture.bytes {
             PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
             PictureBytes::Memory(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
         };
-        let texel = |p: &Color| Color::splat(change(*p).clamp(0.0, 1.0));
+        let texel = |p: &Color| change(*p).clamp(Color::ZERO, Color::ONE);
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
         let bytes = as_png(image, Transfer::Linear)?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);

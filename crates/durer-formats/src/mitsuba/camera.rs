@@ -11,6 +11,7 @@ use durer_diag::Diagnostic;
 use durer_image::MAX_PIXELS;
 use durer_scene::camera::{Camera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use durer_scene::math::fp;
+use durer_scene::scene::Emitters;
 use glam::{DAffine3, DVec2, DVec3};
 use std::rc::Rc;
 
@@ -42,7 +43,16 @@ impl Reader<'_> {
         let size = DVec2::new(f64::from(width), f64::from(height));
         let camera = match sensor.kind.as_str() {
             "perspective" | "thinlens" => Some(self.perspective(&sensor, to_world, size)),
-            "orthographic" => Some(orthographic(to_world, size)),
+            "orthographic" => {
+                let m = to_world.matrix3;
+                let [across, upwards] = [m.x_axis.length(), m.y_axis.length()];
+                if (across - upwards).abs() > 1e-4 * across {
+                    let what = "a scale of an orthographic camera that differs along x and y has no counterpart: \
+                                that along x is used";
+                    report.unsupported_once(sensor.span("to_world"), what);
+                }
+                Some(orthographic(to_world, size, self.clipping(&sensor)))
+            }
             other => {
                 let what = format!("the sensor `{other}` has no counterpart: a camera that frames the scene is used");
                 let warning = Diagnostic::warning(what).code("NO_COUNTERPART").at(sensor.at);
@@ -148,10 +158,7 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             report.error(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        // Ignore the default clipping planes, because they do not clip anything visible.
-        let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
-        let far = sensor.positive(report, "far_clip");
-        let far = far.filter(|far| *far < FAR);
+        let (near, far) = self.clipping(sensor);
         if aperture == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO && near == 0.0 && far.is_none() {
             return PerspectiveCamera { center, direction, up, angle }.into();
         }
@@ -169,6 +176,13 @@ impl Reader<'_> {
             ..Default::default()
         };
         ThinLensCamera { shift_right, shift_up, ..lens }.into()
+    }
+
+    /// Returns the distances of the near and far clipping planes. The default planes are ignored,
+    /// because they do not clip anything visible.
+    fn clipping(&self, sensor: &Plugin) -> (f32, Option<f32>) {
+        let near = sensor.number(self.report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
+        (near, sensor.positive(self.report, "far_clip").filter(|far| *far < FAR))
     }
 
     /// Returns half the width and half the height of the view at distance 1.
@@ -255,11 +269,10 @@ impl Reader<'_> {
             None if plugin.kind.contains("path") => self.scene.render_defaults.bounces = Some(UNLIMITED_BOUNCES),
             None => {}
         }
-        if plugin.boolean(report, "hide_emitters") == Some(true) {
-            report.unsupported_once(
-                plugin.span("hide_emitters"),
-                "hidden lights have no counterpart: all lights are visible",
-            );
+        // At a depth of 0, not even emitters are visible.
+        let is_black = self.scene.render_defaults.no_scattering.is_some_and(|(limit, _)| limit == 0);
+        if plugin.boolean(report, "hide_emitters") == Some(true) || is_black {
+            self.scene.background.emitters = Emitters::Hidden;
         }
         plugin.mark_known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
         plugin.warn_unused(report);
@@ -280,7 +293,7 @@ fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
 }
 
 /// Returns an orthographic camera whose view has a width of 2 units of camera space.
-fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
+fn orthographic(to_world: DAffine3, size: DVec2, (near, far): (f32, Option<f32>)) -> Camera {
     let (right, up, forward) = axes(to_world);
     let across = 2.0 * right.length();
     OrthographicCamera {
@@ -289,7 +302,8 @@ fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
         up: up.normalize_or(DVec3::Y).as_vec3(),
         size: (across * (size.y / size.x).max(1.0)) as f32,
         handedness: handedness(right, up, forward),
-        near: Some(0.0),
+        near: Some(near),
+        far,
     }
     .into()
 }

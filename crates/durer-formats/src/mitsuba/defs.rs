@@ -41,6 +41,16 @@ impl MaterialDef {
         }
     }
 
+    /// Returns a copy of which only a share is there, given by a number and a picture.
+    pub fn with_opacity(&self, opacity: f32, picture: Option<FileName>) -> MaterialDef {
+        self.changed(&|m| {
+            m.opacity *= opacity;
+            if picture.is_some() {
+                m.opacity_texture = picture.clone();
+            }
+        })
+    }
+
     /// Returns a copy in which `change` has been applied to each `PrincipledMaterial`.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> MaterialDef {
         match self {
@@ -71,8 +81,6 @@ pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
 pub(super) struct AreaEmitter {
     pub color: Color,
     pub picture: Option<TextureImage>,
-    /// True if both sides of the surface emit light.
-    pub two_sided: bool,
     pub at: Span,
     pub key: Key,
 }

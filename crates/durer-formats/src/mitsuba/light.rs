@@ -228,7 +228,7 @@ impl Reader<'_> {
         if color == Vec3::ZERO {
             self.report.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
         }
-        Some(AreaEmitter { color, picture, two_sided: false, at: plugin.at, key: plugin.key() })
+        Some(AreaEmitter { color, picture, at: plugin.at, key: plugin.key() })
     }
 
     /// Converts the infinite light to the environment of the scene.

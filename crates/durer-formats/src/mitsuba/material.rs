@@ -7,16 +7,16 @@ use super::metals;
 use super::plugin::{Key, Plugin, Value};
 use super::rough::Boundary;
 use super::state::Reader;
-use super::texture::Texture;
+use super::texture::{Texture, is_file};
 use crate::medium::Medium;
 use crate::pictures::asset;
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
+use durer_image::decode_srgb;
 use durer_scene::bsdf::fresnel::conductor_colors;
-use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
-use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{Backs, Facets, Surroundings, Switch, Walls};
 use durer_scene::material::two_sided::TwoSided;
 use durer_scene::material::{HairMaterial, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Vec3;
@@ -114,12 +114,7 @@ impl Reader<'_> {
             }
             "mask" => {
                 let (opacity, picture) = self.number_or_texture(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
-                return Rc::new(self.nested_material(plugin, depth).changed(&|m| {
-                    m.opacity *= opacity;
-                    if picture.is_some() {
-                        m.opacity_texture = picture.clone();
-                    }
-                }));
+                return Rc::new(self.nested_material(plugin, depth).with_opacity(opacity, picture));
             }
             "bumpmap" => return self.bump_map(plugin, depth),
             "normalmap" => return self.normal_map(plugin, depth),
@@ -132,7 +127,16 @@ impl Reader<'_> {
                     return Rc::new(MaterialDef::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
-                return Rc::new(MaterialDef::Mix(a, b, share, picture));
+                // A blend with nothing is an opacity.
+                return match (&*a, &*b) {
+                    (_, MaterialDef::Null) => Rc::new(a.with_opacity(share, picture)),
+                    (MaterialDef::Null, _) => {
+                        let weight = |weight: f32| weight.clamp(0.0, 1.0);
+                        let (share, picture) = self.number_or_texture(plugin, "weight", 0.5, weight);
+                        Rc::new(b.with_opacity(share, picture))
+                    }
+                    _ => Rc::new(MaterialDef::Mix(a, b, share, picture)),
+                };
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
@@ -146,8 +150,12 @@ impl Reader<'_> {
         }
         // Materials other than glass are black from behind unless they are `twosided`.
         let is_open = m.transmission_weight > 0.0 || m.walls == Walls::Thin || m.transmission_weight_texture.is_some();
-        if !is_open && !self.inside_out {
-            m.backs = Backs::Black;
+        if !is_open {
+            // A point whose normal faces away from the viewer is black too.
+            m.normal_bending = Switch::Off;
+            if !self.inside_out {
+                m.backs = Backs::Black;
+            }
         }
         Rc::new(MaterialDef::Principled(Box::new(m)))
     }
@@ -209,9 +217,15 @@ impl Reader<'_> {
             return inner;
         };
         plugin.mark_known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let raw = texture.boolean(self.report, "raw").unwrap_or(false);
         let picture = self.bitmap(&texture);
         texture.warn_unused(self.report);
-        let Some(picture) = picture else { return inner };
+        let Some(mut picture) = picture else { return inner };
+        // Normals are linear values.
+        if !raw || !is_file(&picture) {
+            let linear = self.pictures().linear(&picture, property.at, decode_srgb, |texel| texel);
+            picture = linear.unwrap_or(picture);
+        }
         let name = asset(&mut self.scene, picture, property.at);
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
@@ -254,16 +268,14 @@ impl Reader<'_> {
             (m.specular_roughness, m.specular_roughness_texture) = self.number_or_texture(plugin, "alpha", 0.1, root);
         }
         match plugin.text(self.report, "distribution").as_deref() {
-            Some("ggx") => {}
-            Some(distribution @ ("beckmann" | "phong" | "as")) => {
-                let what =
-                    format!("the distribution `{distribution}` has no counterpart: `ggx` of the same alpha is used");
+            Some("ggx") => m.specular_facets = Facets::GgxSeparable,
+            Some("beckmann") | None => m.specular_facets = Facets::Beckmann,
+            Some(distribution @ ("phong" | "as")) => {
+                m.specular_facets = Facets::Beckmann;
+                let what = format!(
+                    "the distribution `{distribution}` has no counterpart: `beckmann` of the same alpha is used"
+                );
                 self.report.unsupported_once(plugin.span("distribution"), what);
-            }
-            None => {
-                let what = "the default distribution `beckmann` has no counterpart: `ggx` of the same alpha \
-                            is used";
-                self.report.unsupported_once(plugin.at, what);
             }
             Some(other) => {
                 let help = suggest(other, ["beckmann", "ggx"]);
@@ -305,34 +317,21 @@ impl Reader<'_> {
             self.report
                 .error(plugin.span("material"), "a conductor takes either `material`, or `eta` and `k`, but not both");
         }
-        let [f0, f82] = if !by_numbers && name == "none" {
-            [Vec3::ONE; 2]
-        } else {
-            let metal = metals::metal(&name).unwrap_or_else(|| {
-                if !by_numbers {
-                    let help = suggest(&name, metals::metal_names());
-                    self.report.error_with_help(plugin.span("material"), format!("unknown metal `{name}`"), help);
-                }
-                [[0.0; 3], [1.0; 3]]
-            });
-            let [eta, k] = [("eta", metal[0]), ("k", metal[1])]
-                .map(|(name, default)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(default))));
-            conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
-        };
-        // The tint applies at all angles, so it also affects the reflectance at 82 degrees.
-        let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
-        let (tint, picture) = self.color_or_texture(plugin, "specular_reflectance", 1.0);
-        let at = plugin.span("specular_reflectance");
-        if let Some(picture) = picture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path).cloned()) {
-            let material = self.pictures().joined([&picture, &picture], at, |texel, _| over(tint * texel));
-            if let Some((picture, scale)) = material {
-                m.specular_color_texture = Some(asset(&mut self.scene, picture, at));
-                m.specular_color = Vec3::splat(scale);
-            }
-        } else {
-            m.specular_color = over(tint);
-        }
-        (m.base_metalness, m.base_color, m.base_color_texture) = (1.0, f0 * tint, picture);
+        let metal = if name == "none" { Some([[0.0; 3], [1.0; 3]]) } else { metals::metal(&name) };
+        let metal = metal.unwrap_or_else(|| {
+            let help = suggest(&name, metals::metal_names());
+            self.report.error_with_help(plugin.span("material"), format!("unknown metal `{name}`"), help);
+            [[0.0; 3], [1.0; 3]]
+        });
+        let outside = self.index(plugin, "ext_eta", 1.0);
+        let [n, k] = [("eta", metal[0]), ("k", metal[1])]
+            .map(|(name, default)| self.color(plugin, name, Vec3::from_array(default)) / outside);
+        (m.metal_ior, m.metal_extinction) = (Some(n), k);
+        let [f0, _] = conductor_colors(&SpectrumSource::Rgb(n), &SpectrumSource::Rgb(k), 1.0);
+        // The tint applies at all angles.
+        (m.specular_color, m.specular_color_texture) = self.color_or_texture(plugin, "specular_reflectance", 1.0);
+        (m.base_color, m.base_color_texture) = (f0 * m.specular_color, m.specular_color_texture.clone());
+        m.base_metalness = 1.0;
         self.roughness(plugin, m);
     }
 
@@ -341,30 +340,24 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.49);
         self.tint(plugin, m);
         self.roughness(plugin, m);
+        m.specular_ior = index;
         let nonlinear = plugin.boolean(self.report, "nonlinear").unwrap_or(false);
-        if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
-            let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
-            let boundary = Boundary::new(index, m.specular_roughness, beckmann);
-            m.base_color = match m.base_color_texture.is_some() {
-                // If the colour is given by a picture, assume middle grey.
-                true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
-                false => m.base_color.map(|color| boundary.base(color, nonlinear)),
-            };
-        }
-        if nonlinear {
-            // Use the darkening of a coat for the light that is reflected between the base and the
-            // boundary.
-            (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
-            m.coat_roughness_texture = m.specular_roughness_texture.take();
-            m.specular_weight = 0.0;
-            if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
-                self.report.unsupported_once(
-                    plugin.span("specular_reflectance"),
-                    "a coloured reflection of a coat has no counterpart: a white reflection is used",
-                );
+        let roughness = if m.specular_roughness_texture.is_some() { 0.0 } else { m.specular_roughness };
+        let boundary = Boundary::new(index, roughness, m.specular_facets == Facets::Beckmann);
+        let picture =
+            m.base_color_texture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path)).cloned();
+        match picture.filter(|_| nonlinear) {
+            Some(picture) => {
+                let at = plugin.span("diffuse_reflectance");
+                let faded =
+                    self.pictures().joined([&picture, &picture], at, |texel, _| texel.map(|x| boundary.faded(x)));
+                if let Some((picture, scale)) = faded {
+                    m.base_color_texture = Some(asset(&mut self.scene, picture, at));
+                    m.base_color = Vec3::splat(scale * boundary.below());
+                }
             }
-        } else {
-            m.specular_ior = index;
+            None if nonlinear => m.base_color = boundary.below() * m.base_color.map(|color| boundary.faded(color)),
+            None => m.base_color *= boundary.below(),
         }
         if let Texture::Constant(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
             m.base_color *= color;
@@ -406,7 +399,6 @@ impl Reader<'_> {
                 let most = emitter.map_or(0.0, |emitter| emitter.color.max_element());
                 if let Some(emitter) = emitter.filter(|_| most > 0.0) {
                     (layers.emission_luminance, layers.emission_color) = (most, emitter.color / most);
-                    layers.walls = if emitter.two_sided { Walls::Thin } else { layers.walls };
                     if let Some(picture) = &emitter.picture {
                         layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), emitter.at));
                     }

@@ -8,7 +8,7 @@ use super::state::Reader;
 use crate::disney::{self, DiffuseConverter};
 use durer_scene::bsdf::fresnel::ior_of_reflectance;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Surroundings, Switch, Walls};
+use durer_scene::material::principled::{Facets, Surroundings, Switch, Walls};
 use durer_scene::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
@@ -65,6 +65,7 @@ impl Reader<'_> {
             specular_roughness_texture: roughness_texture,
             specular_anisotropy: 1.0 - v / u.max(1e-12),
             energy_compensation: Switch::Off,
+            specular_facets: Facets::GgxSeparable,
             surroundings: Surroundings::Ignored,
             transmission_weight: clear,
             // Light crosses two surfaces of Disney's glass, and each multiplies it by the square

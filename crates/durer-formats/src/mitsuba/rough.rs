@@ -6,46 +6,41 @@ use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
 
-/// Rough dielectric boundary of a `roughplastic`. The boundary stores the mean transmittance and
-/// reflectance in Mitsuba and in Dürer, which are needed to match the colour of the base.
+/// Dielectric boundary of a `plastic` or `roughplastic`. The boundary stores the mean transmittance
+/// and reflectance in Mitsuba and in Dürer, which are needed to match the colour of the base.
 pub(super) struct Boundary {
     index: f32,
-    /// Mean transmittance of the rough boundary from outside and its mean reflectance from inside,
-    /// in Mitsuba. `smooth` has the values of a smooth boundary.
-    rough: [f32; 2],
-    smooth: [f32; 2],
-    /// Mean transmittance in Dürer for light that enters the base and leaves it again.
-    transmittance: f32,
-    /// Mean reflectance in Dürer minus the mean reflectance in Mitsuba.
-    reflectance_difference: f32,
+    /// Mean transmittance of the boundary from outside and its mean reflectance from inside, in
+    /// Mitsuba.
+    through: f32,
+    inside: f32,
+    /// Mean transmittance in Dürer for light that enters the base and leaves it again, or `None`
+    /// for a smooth boundary, where both programs agree.
+    transmittance: Option<f32>,
 }
 
 impl Boundary {
-    /// Computes the mean values. `roughness` is the square root of alpha, and must not be 0.
+    /// Computes the mean values. `roughness` is the square root of alpha.
     pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
+        if roughness == 0.0 {
+            let [outside, inside] = [index, 1.0 / index].map(mean_reflectance);
+            return Boundary { index, through: 1.0 - outside, inside, transmittance: None };
+        }
         let theirs = |index: f32| means(index, roughness * roughness, beckmann);
         let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
         // Mitsuba sums over 64 values of the cosine from 0 to 1, and gives both ends their full
         // weight.
         let straight = (index - 1.0) / (index + 1.0);
         let inside = (63.0 * inside + straight * straight) / 64.0;
-        let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
-        let ours = single_means(index, roughness);
-        Boundary {
-            index,
-            rough: [all - reflected, inside],
-            smooth: [sum - mirrored, within],
-            transmittance: boundary_transmittance(ours),
-            reflectance_difference: ours[0] - reflected,
-        }
+        let transmittance = Some(boundary_transmittance(single_means(index, roughness)));
+        Boundary { index, through: all - reflected, inside, transmittance }
     }
 
-    /// Returns the colour of a diffuse base that, below this boundary, looks like a base with the
-    /// colour `color` does in Mitsuba. If `fades` is true, light is tinted by the base again each
-    /// time it is reflected between the base and the boundary.
-    pub fn base(&self, color: f32, fades: bool) -> f32 {
-        let below = color * self.below(fades.then_some(color));
-        if fades { below } else { (below - self.reflectance_difference / self.transmittance).max(0.0) }
+    /// Returns the colour of a base whose light is not tinted again by each reflection between the
+    /// base and the boundary, and that looks like a base of the colour `color` whose light is
+    /// (`nonlinear`). Both are Lambertian below the same boundary, so they agree in all directions.
+    pub fn faded(&self, color: f32) -> f32 {
+        color * (1.0 - self.inside) / (1.0 - color * self.inside)
     }
 
     /// Returns the colour in Mitsuba for which [`Boundary::base`] returns `base`.
@@ -59,17 +54,20 @@ impl Boundary {
     }
 
     /// Returns the mean radiance of a diffuse base seen through the boundary in Mitsuba, divided by
-    /// its value in Dürer. In Mitsuba, light is lost each time that it crosses the boundary, both
-    /// on the way in and on the way out. If bounces change the colour, `left` is the fraction of
-    /// light that remains after each bounce.
-    pub fn below(&self, left: Option<f32>) -> f32 {
-        let shown = |[through, inside]: [f32; 2]| {
-            let through = through / self.index;
-            through * through / (1.0 - inside * left.unwrap_or(1.0))
-        };
-        // A smooth coat darkens the base by the same amount as Mitsuba's coat.
-        shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.transmittance }
+    /// its value in Dürer. In Mitsuba, light is lost each time that it crosses a rough boundary,
+    /// both on the way in and on the way out.
+    pub fn below(&self) -> f32 {
+        let through = self.through / self.index;
+        self.transmittance.map_or(1.0, |ours| through * through / (1.0 - self.inside) / ours)
     }
+}
+
+/// Returns the reflectance of a smooth boundary for light from all directions.
+fn mean_reflectance(eta: f32) -> f32 {
+    const STEPS: u32 = 1024;
+    // The square of the cosine is uniform, as is the light that falls on a surface.
+    let at = |i: u32| fresnel::dielectric(((i as f32 + 0.5) / STEPS as f32).sqrt(), eta);
+    (0..STEPS).map(at).sum::<f32>() / STEPS as f32
 }
 
 /// Computes the mean albedos as [`single_means`] does, but with Mitsuba's separable masking, which
@@ -129,15 +127,24 @@ mod tests {
         let [reflected, all] = means(1.5, 0.02, true);
         let [smooth, _] = single_means(1.5, 0.0);
         assert!((reflected - smooth).abs() < 0.01 && (all - 1.0).abs() < 0.01, "{reflected} {smooth} {all}");
-        let below = |roughness: f32, beckmann: bool, left| Boundary::new(1.49, roughness, beckmann).below(left);
-        assert!((below(0.1, false, None) - 1.0).abs() < 0.02);
-        for left in [None, Some(0.5)] {
-            for beckmann in [false, true] {
-                let of = |roughness: f32| below(roughness, beckmann, left);
-                assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
-            }
-            // Beckmann's distribution has fewer steep microfacets.
-            assert!(below(0.6, true, left) > below(0.6, false, left));
+        let below = |roughness: f32, beckmann: bool| Boundary::new(1.49, roughness, beckmann).below();
+        assert!((below(0.1, false) - 1.0).abs() < 0.02);
+        for beckmann in [false, true] {
+            let of = |roughness: f32| below(roughness, beckmann);
+            assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann}");
         }
+        // Beckmann's distribution has fewer steep microfacets.
+        assert!(below(0.6, true) > below(0.6, false));
+    }
+
+    #[test]
+    fn light_that_is_tinted_by_each_bounce_is_a_geometric_series() {
+        // A share F of the light returns to the base at each bounce: c (1 - F) / (1 - c F).
+        let smooth = Boundary::new(1.5, 0.0, false);
+        let sum: f32 = (0..200).map(|bounce| 0.6 * (0.6 * smooth.inside).powi(bounce)).sum();
+        assert!((smooth.faded(0.6) - sum * (1.0 - smooth.inside)).abs() < 1e-5);
+        // By conservation of étendue, 1 - inside = (1 - outside) / index^2; `through` is 1 - outside.
+        assert!((1.0 - smooth.inside - smooth.through / 2.25).abs() < 1e-3, "{}", smooth.inside);
+        assert_eq!((smooth.below(), smooth.faded(1.0)), (1.0, 1.0));
     }
 }

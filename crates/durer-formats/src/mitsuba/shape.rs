@@ -73,11 +73,8 @@ impl Reader<'_> {
         if let Some((node, to_world)) = shape {
             let inside = self.interior_medium(plugin);
             let area_emitter = self.child_plugins(plugin, Some("emitter")).into_iter().next();
-            let mut area_emitter = area_emitter.and_then(|(_, emitter)| self.area_light(&emitter));
-            self.inside_out = is_inside_out(plugin, report);
-            if let Some(area_emitter) = area_emitter.as_mut().filter(|_| self.inside_out) {
-                (area_emitter.two_sided, area_emitter.key) = (true, plugin.key());
-            }
+            let area_emitter = area_emitter.and_then(|(_, emitter)| self.area_light(&emitter));
+            self.inside_out = matches!(node, ObjectKind::Primitive(_)) && is_inside_out(plugin, report);
             let material = self.child_plugins(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
             match self.material_index(material.as_ref(), area_emitter.as_ref(), inside, at) {
                 Some(number) => {
@@ -166,14 +163,25 @@ impl Reader<'_> {
         plugin.boolean(self.report, "flip_normals").unwrap_or(false)
     }
 
-    fn sphere(&self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    /// Returns true if light can pass the surface of a shape.
+    fn is_glass(&self, plugin: &Plugin) -> bool {
+        let glass = |part: &Rc<Plugin>| part.kind.ends_with("dielectric") || part.kind.starts_with("principled");
+        self.reachable(plugin, &["bsdf"]).iter().any(glass)
+    }
+
+    fn sphere(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let radius = plugin.positive(self.report, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.report, "center").unwrap_or(DVec3::ZERO);
-        if is_inside_out(plugin, self.report) && !self.child_plugins(plugin, Some("emitter")).is_empty() {
-            let what = "a sphere that emits inwards has no counterpart: it emits on both sides";
-            self.report.unsupported_once(plugin.span("flip_normals"), what);
-        }
         let to_world = to_world * DAffine3::from_translation(center);
+        // An analytic sphere cannot face inwards.
+        if is_inside_out(plugin, self.report)
+            && (!self.is_glass(plugin) || !self.child_plugins(plugin, Some("emitter")).is_empty())
+        {
+            let flipped = self.is_flipped(plugin);
+            return self.mesh(plugin, &format!("sphere-{radius}"), to_world, || {
+                Some(tessellate::sphere(radius).oriented(!flipped))
+            });
+        }
         let (center, to_world) = match self.has_picture(plugin) || self.is_anisotropic(plugin) {
             // In Mitsuba, the poles are on the z axis, and u is 0 at +x. In Dürer the poles are on
             // the y axis, and u = 1/2 is at -z.

@@ -152,14 +152,9 @@ fn diagnostics_have_their_place() {
             "error unknown metal `Gold`",
         ),
         (
-            "<shape type='sphere'><bsdf type='roughplastic'><string name='distribution' value='beckmann'/></bsdf></shape>",
-            "beckmann",
-            "warning the distribution `beckmann` has no counterpart",
-        ),
-        (
-            "<shape type='sphere'><bsdf type='roughplastic'/></shape>",
-            "roughplastic",
-            "warning the default distribution `beckmann` has no counterpart",
+            "<shape type='sphere'><bsdf type='roughplastic'><string name='distribution' value='phong'/></bsdf></shape>",
+            "phong",
+            "warning the distribution `phong` has no counterpart",
         ),
     ] {
         let text = format!("<scene>{inner}</scene>");

@@ -21,6 +21,12 @@ pub(super) enum Texture {
     Picture(TextureImage, Color, bool),
 }
 
+/// Returns true if a picture is a file with integer values. Other pictures have been converted, and
+/// are in sRGB encoding even if they are `raw`.
+pub(super) fn is_file(picture: &TextureImage) -> bool {
+    matches!(picture.bytes, PictureBytes::File(_))
+}
+
 impl Reader<'_> {
     /// Returns the value of a property that may be a texture, or `default` if the property is
     /// missing.
@@ -63,8 +69,7 @@ impl Reader<'_> {
             "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
             // Vertex colours multiply the material's colour.
             "mesh_attribute" if texture.text(self.report, "name").is_some_and(|name| name == "vertex_color") => {
-                texture.mark_known(&["scale"]);
-                Some(Texture::Constant(Vec3::ONE))
+                Some(Texture::Constant(Vec3::splat(texture.number(self.report, "scale").unwrap_or(1.0))))
             }
             other => {
                 let message = format!("the texture `{other}` has no counterpart: the default value is used");
@@ -128,7 +133,7 @@ impl Reader<'_> {
             None => self.texture_of(property, Vec3::ZERO),
         };
         let Texture::Picture(picture, scale, raw) = texture else { return None };
-        let decode = if raw { decode_linear } else { decode_srgb };
+        let decode = if raw && is_file(&picture) { decode_linear } else { decode_srgb };
         // The luminance of a colour is used where a number is expected.
         let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
         let picture = self.pictures().changed(&picture, property.at, decode, number)?;

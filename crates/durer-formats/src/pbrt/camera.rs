@@ -266,6 +266,7 @@ impl Reader<'_> {
             size: (2.0 * half) as f32,
             handedness: CameraFrame::handedness(a, b, c),
             near: Some(0.0),
+            far: None,
         };
         Some(camera.into())
     }

@@ -7,7 +7,7 @@ use durer_render::render::{Job, Sampling};
 use durer_render::world::{Geometry, Material, Object, Phong, Principled, ShadingRules, World};
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::light::Light;
-use durer_scene::material::principled::{Backs, Surroundings, Walls};
+use durer_scene::material::principled::{Backs, Facets, Surroundings, Walls};
 use durer_scene::material::{Pattern as _, PatternMaterial};
 use durer_scene::math::Color;
 use durer_scene::shape::Primitive;
@@ -55,7 +55,7 @@ pub fn needs(world: &World, job: &Job) -> Vec<Feature> {
     if world.fog().is_some() && traces_paths {
         found.push(Feature::Media);
     }
-    if traces_paths && world.has_cutouts() {
+    if traces_paths && (world.has_cutouts() || world.hides_emitters()) {
         found.push(Feature::Cutouts);
     }
     if world.glass_around(world.camera_frame().eye).next().is_some() {
@@ -176,6 +176,8 @@ fn of_principled(principled: &Principled, found: &mut Vec<Feature>) {
         && m.fuzz_weight == 0.0
         && m.thin_film_weight == 0.0
         && m.specular_anisotropy == 0.0
+        && m.specular_facets == Facets::Ggx
+        && m.metal_ior.is_none()
         && (m.transmission_weight == 0.0 || is_smooth)
         && m.walls == Walls::Solid
         && m.surroundings == Surroundings::Nested;

@@ -24,6 +24,8 @@ pub struct Contents {
     pub background: Color,
     /// True if paths see a black background because the scene does not define a background.
     pub is_black_for_paths: bool,
+    /// True if the camera sees neither emissive surfaces nor the background.
+    pub hides_emitters: bool,
     /// Ambient light.
     pub ambient: Color,
     /// Lights.
@@ -136,6 +138,12 @@ impl World {
     /// Returns true if paths see a black background because the scene does not define a background.
     pub fn is_dark(&self) -> bool {
         self.contents.is_black_for_paths
+    }
+
+    /// Returns true if paths that come directly from the camera pass emissive surfaces and see a
+    /// black background.
+    pub fn hides_emitters(&self) -> bool {
+        self.contents.hides_emitters
     }
 
     /// Returns the ambient light.

@@ -9,6 +9,7 @@ use durer_scene::bsdf::lobe::blinn::Blinn;
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, StraightTransmission};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
+use durer_scene::material::Pattern;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
@@ -95,7 +96,8 @@ impl World {
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         let wo = -dir.normalize_or(-n_geo);
         let n = n.normalize_or(n_geo);
-        let keeps = mapped.is_some_and(|principled| principled.definition.normal_bending == Switch::Off);
+        let first = mapped.or_else(|| parts.first().and_then(|part| part.phong.principled.as_ref()));
+        let keeps = first.is_some_and(|principled| principled.definition.normal_bending == Switch::Off);
         let is_turned_away = keeps && n.dot(wo) <= 0.0;
         let bent = if keeps && !is_turned_away { n } else { bend_normal(n, n_geo, wo) };
         let frame = self.frame(&parts, at, bent);
@@ -139,6 +141,15 @@ impl World {
         let frame = Frame::along(n, self.tangent(at));
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
+    }
+
+    /// Returns true if a material emits light anywhere. Of a mixture, one material is enough.
+    pub fn emits(&self, material: u32) -> bool {
+        match self.materials().get(material as usize) {
+            Some(Material::Phong(phong)) => phong.emission.is_some(),
+            Some(Material::Mix(pattern, ..)) => pattern.materials().iter().any(|&part| self.emits(part)),
+            None => false,
+        }
     }
 
     /// Returns the emission of a material, multiplied by its opacity, if both are uniform so that

@@ -165,6 +165,35 @@ impl F82 {
     }
 }
 
+/// Reflectance curve of a metal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MetalCurve {
+    /// Curve through two colours.
+    F82(F82),
+    /// Fresnel's equations for the complex index n + i k, times a tint.
+    Index {
+        /// Real part of the index.
+        n: Spectrum,
+        /// Imaginary part of the index.
+        k: Spectrum,
+        /// Factor at all angles.
+        tint: Spectrum,
+    },
+}
+
+impl MetalCurve {
+    /// Returns the reflectance at a cosine from 0 to 1.
+    pub fn at(&self, cosine: f32) -> Spectrum {
+        match self {
+            MetalCurve::F82(curve) => curve.at(cosine),
+            MetalCurve::Index { n, k, tint } => {
+                let [n, k] = [n.to_array(), k.to_array()];
+                *tint * Spectrum::from_array(std::array::from_fn(|i| conductor(cosine, n[i], k[i])))
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,7 +10,7 @@
 use super::Bsdf;
 use super::albedo::{self, DielectricAlbedo};
 use super::film::Film;
-use super::fresnel::{self, Sheet};
+use super::fresnel::{self, F82, MetalCurve, Sheet};
 use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, StraightTransmission};
@@ -278,7 +278,7 @@ impl<'t> LayerStack<'_, 't> {
         if tables.ior == 1.0 && film.is_none() {
             return Spectrum::ZERO;
         }
-        let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
+        let (ggx, mu) = (Ggx::new(roughness, 0.0).with(self.parameters.specular_facets), self.view.wo.z);
         if ggx.is_smooth() {
             let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));
             let reflectance = film.map_or_else(plain, |film| film.reflected(mu));
@@ -322,13 +322,25 @@ impl<'t> LayerStack<'_, 't> {
         tint * Spectrum::ONE.lerp(darker, m.coat_darkening)
     }
 
+    /// Returns the reflectance curve of the metal, from its complex index or from its colours.
+    fn metal_curve(&self) -> MetalCurve {
+        match self.parameters.metal_ior {
+            Some(n) => MetalCurve::Index {
+                n: self.view.lanes.reflectance(n),
+                k: self.view.lanes.reflectance(self.parameters.metal_extinction),
+                tint: self.specular,
+            },
+            None => MetalCurve::F82(F82::new(self.base, self.specular)),
+        }
+    }
+
     fn metal(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         if weight.max_element() <= 0.0 {
             return;
         }
         let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
-        let f82 = fresnel::F82::new(self.base, self.specular);
-        let ggx = Ggx::new(roughness, m.specular_anisotropy);
+        let curve = self.metal_curve();
+        let ggx = Ggx::new(roughness, m.specular_anisotropy).with(m.specular_facets);
         let mut weight = weight * m.specular_weight.min(1.0) * m.reflection;
         if m.thin_film_weight > 0.0 {
             let film = Film::on_metal(self.view.lanes, m.thin_film_thickness, m.thin_film_ior, self.base);
@@ -346,14 +358,14 @@ impl<'t> LayerStack<'_, 't> {
             }
         }
         if ggx.is_smooth() {
-            let reflected = weight * f82.at(mu);
+            let reflected = weight * curve.at(mu);
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
         let reflectance = self.facets(ggx, roughness);
         // Each further reflection between facets is tinted by the colour of the metal again.
         let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
-        let rough = RoughReflection { ggx: ggx.clamped(), facet: Facet::Metal(f82), transmits: false };
-        bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
+        let rough = RoughReflection { ggx: ggx.clamped(), facet: Facet::Metal(curve), transmits: false };
+        bsdf.push(rough, weight * again, (weight * curve.at(mu)).max_element());
     }
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
@@ -367,7 +379,7 @@ impl<'t> LayerStack<'_, 't> {
         if eta == 1.0 && film.is_none() {
             return bsdf.push(StraightTransmission, weight * tint, weight.max_element());
         }
-        let ggx = Ggx::new(roughness, m.specular_anisotropy);
+        let ggx = Ggx::new(roughness, m.specular_anisotropy).with(m.specular_facets);
         let plain = fresnel::dielectric(wo.z, eta);
         let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
         // If the index does not change, rough glass does not scatter.
@@ -398,7 +410,7 @@ impl<'t> LayerStack<'_, 't> {
     /// Adds a thin sheet with internal reflections. Transmitted light keeps its direction.
     fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
-        let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
+        let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy).with(m.specular_facets));
         let color = self.view.lanes.reflectance(m.transmission_color);
         // With a depth, the colour applies to the interior. Without a depth, it tints all
         // transmitted light.

@@ -132,7 +132,7 @@ pub fn non_delta_lobes() -> Vec<(&'static str, Lobe<'static>)> {
         })
     });
     let hair = |i: usize| Lobe::from(FIBRES[i].lobe(&Lanes::Rgb));
-    let leaning = Vec3::new(0.6, 0.0, 0.8);
+    let (leaning, white) = (Vec3::new(0.6, 0.0, 0.8), fresnel::MetalCurve::F82(fresnel::F82::WHITE));
     vec![
         ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
         ("rough matte", Diffuse { roughness: 1.0, ..Diffuse::lambert(Spectrum::ONE) }.into()),
@@ -144,8 +144,8 @@ pub fn non_delta_lobes() -> Vec<(&'static str, Lobe<'static>)> {
         ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
         ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
         ("fuzz", Fuzz { roughness: 0.4 }.into()),
-        ("rough metal", rough(0.5, 0.0, Facet::Metal(fresnel::F82::WHITE), false)),
-        ("brushed metal", rough(0.7, 0.6, Facet::Metal(fresnel::F82::WHITE), false)),
+        ("rough metal", rough(0.5, 0.0, Facet::Metal(white), false)),
+        ("brushed metal", rough(0.7, 0.6, Facet::Metal(white), false)),
         ("very rough plastic", rough(1.0, 0.0, Facet::Dielectric(1.5), false)),
         ("rough pane, front", rough(0.6, 0.0, Facet::Sheet(fresnel::Sheet { eta: 1.5, inside: None }), false)),
         (

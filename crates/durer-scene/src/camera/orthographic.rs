@@ -22,6 +22,8 @@ described! {
         /// Distance from `center` to the near plane, for plans and sections. Without it, objects
         /// behind `center` are visible.
         near: Option<f32> = None, optional, Constraint::Any, ["near" in set::DURER];
+        /// Distance from `center` to the far plane; unlimited by default.
+        far: Option<f32> = None, optional, Constraint::Any, ["far" in set::DURER];
         /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
         handedness: Handedness = Handedness::Right, optional, Constraint::Any, ["handedness" in set::DURER];
     }
@@ -39,11 +41,13 @@ impl Projection for OrthographicCamera {
         let x = self.handedness.sign() as f32 * point.x;
         let origin = frame.eye + x * half * frame.right + point.y * half * frame.up;
         let t_min = self.near.unwrap_or(f32::NEG_INFINITY);
-        Some(Ray { t_min, ..Ray::new(origin, frame.forward) })
+        let ray = Ray::new(origin, frame.forward);
+        Some(Ray { t_min, t_max: self.far.unwrap_or(ray.t_max), ..ray })
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
-        if self.near.is_some_and(|near| (world - frame.eye).dot(frame.forward) < near) {
+        let depth = (world - frame.eye).dot(frame.forward);
+        if self.near.is_some_and(|near| depth < near) || self.far.is_some_and(|far| depth > far) {
             return;
         }
         let p = self.handedness.convert(frame.camera_from_world(world));

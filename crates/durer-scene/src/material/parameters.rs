@@ -1,6 +1,6 @@
 //! Parameters of a layered material at one surface point, and the textures that change them.
 
-use super::principled::{PrincipledMaterial, Switch, Walls};
+use super::principled::{Facets, PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;
 use crate::math::Vec3;
 
@@ -40,9 +40,12 @@ parameters! {
     specular_weight: f32,
     specular_color: Vec3,
     specular_roughness: f32,
+    specular_facets: Facets,
     specular_anisotropy: f32,
     specular_rotation: f32,
     specular_ior: f32,
+    metal_ior: Option<Vec3>,
+    metal_extinction: Vec3,
     energy_compensation: Switch,
     transmission_weight: f32,
     transmission_color: Vec3,

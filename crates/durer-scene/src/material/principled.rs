@@ -23,6 +23,13 @@ described_words! {
 }
 
 described_words! {
+    /// Distribution of the microfacets of a rough surface, and how they hide each other. `ggx` is
+    /// GGX with masking that is correlated by height. The others multiply the masking of both
+    /// directions, as Mitsuba does.
+    Facets { Ggx = "ggx", GgxSeparable = "ggxSeparable", Beckmann = "beckmann" }
+}
+
+described_words! {
     /// Treatment of the medium around glass when light is refracted at it.
     Surroundings { Nested = "nested", Ignored = "ignored" }
 }
@@ -72,6 +79,10 @@ described! {
         /// multiplies `baseMetalness`.
         metallic_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["metallicRoughnessTexture" in set::DURER];
+        /// Distribution of the microfacets: `ggx`, as in pbrt and OpenPBR; `ggxSeparable`, where the
+        /// masking of both directions is multiplied, as in Mitsuba; `beckmann`, Mitsuba's default,
+        /// also with multiplied masking. `energyCompensation` adds what `ggx` loses.
+        specular_facets: Facets = Facets::Ggx, optional, Constraint::Any, ["specularFacets" in set::DURER];
         /// Elongation of the highlight, from 0 (round) to 1.
         specular_anisotropy: f32 = 0.0, optional, Constraint::UnitInterval, ["specularAnisotropy" in set::DURER];
         /// Texture that multiplies `specularAnisotropy`.
@@ -86,6 +97,11 @@ described! {
             ["specularRotationTexture" in set::DURER];
         /// Index of refraction of the inside of the object.
         specular_ior: f32 = 1.5, optional, Constraint::Positive, ["specularIor" in set::DURER];
+        /// Real part of the complex index of refraction of the metal, for red, green and blue. With
+        /// it, the metal reflects as Fresnel's equations say, times `specularColor`.
+        metal_ior: Option<Vec3> = None, optional, Constraint::Any, ["metalIor" in set::DURER];
+        /// Imaginary part of the complex index of refraction of the metal; needs `metalIor`.
+        metal_extinction: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["metalExtinction" in set::DURER];
         /// `nested`: refraction at glass inside other glass or water uses both indices. `ignored`:
         /// `specularIor` is the ratio of the index inside to the index outside, regardless of the
         /// surrounding medium, as in pbrt and Mitsuba.
@@ -213,7 +229,7 @@ described! {
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
         bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
-        /// `on`: bends mapped normals that face away from the viewer, so that mirrored rays leave
+        /// `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave
         /// the surface. `off`: leaves such points black, as in Mitsuba.
         normal_bending: Switch = Switch::On, optional, Constraint::Any, ["normalBending" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through

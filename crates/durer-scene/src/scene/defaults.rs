@@ -144,7 +144,8 @@ impl SceneDefaults {
         }
         // The background of a scene that has its own light is black, unless the file sets it.
         let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
-        if (emits || self.own_light) && scene.background == Background::default() {
+        let unset = scene.background == Background::default() && !scene.background_span.has_position();
+        if (emits || self.own_light) && unset {
             scene.background.color = Vec3::ZERO;
         }
     }

@@ -11,7 +11,7 @@ pub mod matrix;
 mod validate;
 
 use crate::camera::Camera;
-use crate::describe::{Constraint, FileName, described};
+use crate::describe::{Constraint, FileName, described, described_words};
 use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
@@ -32,6 +32,11 @@ use std::sync::Arc;
 pub use validate::MAX_NESTING;
 
 pub use defaults::{Axis, DefaultLighting, PresetView, SceneDefaults};
+
+described_words! {
+    /// Visibility of the emitters to the camera.
+    Emitters { Shown = "shown", Hidden = "hidden" }
+}
 
 described! {
     /// Background seen by rays that hit nothing, and ambient light.
@@ -86,6 +91,9 @@ described! {
         environment_rotation: Option<f32> = None, optional, Constraint::Any, ["environmentRotation" in set::DURER];
         /// Factor on the environment.
         environment_scale: Option<Vec3> = None, optional, Constraint::Any, ["environmentScale" in set::DURER];
+        /// `hidden`: the camera sees neither emissive surfaces nor the background, which still
+        /// light the scene and are seen in mirrors, as with Mitsuba's `hide_emitters`; `path` only.
+        emitters: Emitters = Emitters::Shown, optional, Constraint::Any, ["emitters" in set::DURER];
     }
 }
 

@@ -5,7 +5,7 @@ use super::{clean, folder, material, objects, read, read_in};
 use durer_scene::camera::{Camera, Handedness};
 use durer_scene::describe::FileName;
 use durer_scene::light::Light;
-use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{Backs, Facets, Surroundings, Switch, Walls};
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::scene::{Material, MatrixOp, MatrixRules, ObjectKind, PictureBytes, Scene};
@@ -292,12 +292,76 @@ fn emitters_without_material_do_not_scatter() {
     assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
     assert_eq!(layers(&format!("{light}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5)); // prose: keep
     assert_eq!(layers("").base_color, Vec3::splat(0.5));
-    // An inverted sphere is a dome that emits light into its interior.
+    // An inverted sphere is a dome that emits light into its interior, on that side only.
     let dome = format!("<boolean name='flip_normals' value='true'/>{light}"); // prose: keep
-    let (scene, messages) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
-    assert!(messages[0].contains("it emits on both sides"), "{messages:?}");
-    let Material::Principled(dome) = material(scene.as_ref().unwrap()) else { panic!() };
-    assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Thin));
+    let scene = clean(&format!("<shape type='sphere'>{dome}</shape>"));
+    let Material::Principled(dome) = material(&scene) else { panic!() };
+    assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Solid));
+    assert_faces_inwards(&scene);
+}
+
+/// Asserts that the normals and the faces of a mesh around the origin point inwards.
+fn assert_faces_inwards(scene: &Scene) {
+    let data = mesh(scene);
+    for (corners, normals) in data.triangles.iter().zip(&data.triangle_normals) {
+        let [a, b, c] = corners.map(|i| data.positions[i as usize]);
+        assert!((b - a).cross(c - a).dot(a + b + c) < 0.0, "{a} {b} {c}");
+        assert!(normals.iter().zip([a, b, c]).all(|(&i, p)| data.normals[i as usize].dot(p) < -0.99));
+    }
+}
+
+#[test]
+fn opaque_spheres_that_are_inside_out_show_their_inside() {
+    let flip = "<boolean name='flip_normals' value='true'/>"; // prose: keep
+    let mirror = "<transform name='to_world'><scale x='-1'/></transform>";
+    for more in [flip, mirror] {
+        assert_faces_inwards(&clean(&format!("<shape type='sphere'><bsdf type='diffuse'/>{more}</shape>")));
+    }
+    // Both together are an ordinary sphere.
+    let scene = clean(&format!("<shape type='sphere'><bsdf type='diffuse'/>{flip}{mirror}</shape>"));
+    assert!(scene.assets.meshes.is_empty());
+}
+
+#[test]
+fn facets_are_those_of_the_distribution() {
+    let of = |more: &str| layers(&format!("<bsdf type='roughconductor'>{more}</bsdf>")).specular_facets;
+    assert_eq!(of(""), Facets::Beckmann);
+    assert_eq!(of("<string name='distribution' value='beckmann'/>"), Facets::Beckmann);
+    assert_eq!(of("<string name='distribution' value='ggx'/>"), Facets::GgxSeparable);
+    assert_eq!(layers("<bsdf type='principled'/>").specular_facets, Facets::GgxSeparable);
+}
+
+#[test]
+fn blend_with_nothing_is_an_opacity() {
+    let of = |parts: &str| layers(&format!("<bsdf type='blendbsdf'><float name='weight' value='.3'/>{parts}</bsdf>"));
+    let (matte, none) = ("<bsdf type='diffuse'/>", "<bsdf type='null'/>");
+    // `weight` is the share of the second material.
+    assert!((of(&format!("{matte}{none}")).opacity - 0.7).abs() < 1e-6);
+    assert!((of(&format!("{none}{matte}")).opacity - 0.3).abs() < 1e-6);
+}
+
+#[test]
+fn normal_maps_are_linear_in_every_encoding() {
+    // The byte 128 is 0.2158 in sRGB, and a PFM picture is always linear.
+    let pfm = [b"PF\n1 1\n-1.0\n".as_slice(), &[0.5f32, 0.25, 1.0].map(f32::to_le_bytes).concat()].concat();
+    let ppm = b"P6\n1 1\n255\n\x80\x40\xff";
+    for (name, bytes, raw, wanted) in [
+        ("n.pfm", pfm.as_slice(), "true", [0.5, 0.25, 1.0]),
+        ("n.pfm", &pfm, "false", [0.5, 0.25, 1.0]),
+        ("n.ppm", ppm, "false", [0.2158, 0.0513, 1.0]),
+    ] {
+        let map = format!(
+            "<bsdf type='normalmap'><texture name='normalmap' type='bitmap'><boolean name='raw' value='{raw}'/>\
+             <string name='filename' value='{name}'/></texture><bsdf type='diffuse'/></bsdf>"
+        );
+        let scene = clean_in(&[(name, bytes)], &format!("<shape type='rectangle'>{map}</shape>"));
+        let Material::Principled(layers) = material(&scene) else { panic!() };
+        let picture = &scene.assets.pictures[&layers.normal_texture.as_ref().unwrap().path];
+        let PictureBytes::Memory(path, bytes) = &picture.bytes else { panic!("{name}") };
+        let image = durer_image::Encoded::open(bytes, path).unwrap();
+        let pixel = image.read(1 << 20, durer_image::decode_linear).unwrap().pixels[0].to_array();
+        assert!((0..3).all(|k| (pixel[k] - wanted[k]).abs() < 4e-3), "{name} {raw}: {pixel:?}");
+    }
 }
 
 #[test]
@@ -432,14 +496,12 @@ fn conductor_tint_applies_at_all_angles() {
         |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
     let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
     let tint = Vec3::new(0.5, 0.25, 0.5);
-    // At 82 degrees, the reflectance of a metal is Schlick's approximation times its specular
-    // colour.
-    let at_82 = |m: &PrincipledMaterial| {
-        let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(6.0 / 7.0, 5.0);
-        schlick * m.specular_color
-    };
     assert!((tinted.base_color - tint * plain.base_color).abs().max_element() < 1e-6);
-    assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
+    assert_eq!((plain.specular_color, tinted.specular_color), (Vec3::ONE, tint));
+    assert!(plain.metal_ior.is_some() && plain.metal_ior == tinted.metal_ior);
+    // Without a material, all light is reflected: n = 0 and k = 1.
+    let white = layers("<bsdf type='conductor'/>");
+    assert_eq!((white.metal_ior, white.metal_extinction, white.base_color), (Some(Vec3::ZERO), Vec3::ONE, Vec3::ONE));
 }
 
 /// Mesh of two faces with a fold between them, in which only one vertex has a colour.
@@ -467,6 +529,12 @@ fn mesh_files_are_smooth_and_uncoloured_by_default() {
     assert!(of("<boolean name='face_normals' value='true'/>").flat);
     let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
         <string name='name' value='vertex_color'/></texture></bsdf>");
+    let dimmed = "<shape type='ply'><string name='filename' value='folded.ply'/><bsdf type='diffuse'>\
+        <texture name='reflectance' type='mesh_attribute'><string name='name' value='vertex_color'/>\
+        <float name='scale' value='.5'/></texture></bsdf></shape>";
+    let scene = clean_in(&[("folded.ply", FOLDED.as_bytes())], dimmed);
+    let Material::Principled(dimmed) = material(&scene) else { panic!() };
+    assert_eq!(dimmed.base_color, Vec3::splat(0.5));
     // Vertex colours of PLY files are linear.
     let wanted = [0.5, 0.2, 0.8];
     let found = colored.colors[0];

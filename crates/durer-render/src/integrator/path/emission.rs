@@ -16,6 +16,9 @@ impl Path<'_> {
         context: &SampleContext,
         output: &mut PathOutput<T>,
     ) {
+        if self.hides_emitters(state) {
+            return;
+        }
         let emitters = self.world.emitters();
         let dir = state.ray.dir();
         let (sky, pdf) = emitters.sky(self.world, dir);

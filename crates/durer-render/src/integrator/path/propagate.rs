@@ -115,6 +115,10 @@ impl Path<'_> {
                     rest.rounded.t_min = hit.t;
                     break 'passed;
                 }
+                if self.hides_emitters(state) && self.world.emits(at.material) {
+                    rest.rounded.t_min = hit.t;
+                    break 'passed;
+                }
                 if self.world.has_cutouts() {
                     let opacity = self.world.opacity(at);
                     layers += 1;
@@ -136,6 +140,11 @@ impl Path<'_> {
             }
             hit = self.world.closest_along(&mut rest, listener);
         }
+    }
+
+    /// Returns true if a ray comes directly from the camera, which does not see the emitters.
+    pub(super) fn hides_emitters(&self, state: &PathState) -> bool {
+        self.world.hides_emitters() && state.depth == 0 && state.camera_distance.is_some()
     }
 
     /// Returns true if the render was cancelled.

@@ -101,7 +101,7 @@ fn from_axes([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     let y2 = a2 * b2 * (1.0 - correlation * correlation) / x2;
     let (sin, cos) = fp::sin_cos_turn(0.5 * fp::atan2_turn(2.0 * both, a2 - b2));
     let flat = direction((cosine * cosine).max(1e-4));
-    (Ggx { alpha: Vec2::new(x2.sqrt(), y2.sqrt()) }.clamped(), Vec3::new(flat.x * cos, flat.x * sin, flat.z))
+    (Ggx::of(Vec2::new(x2.sqrt(), y2.sqrt())).clamped(), Vec3::new(flat.x * cos, flat.x * sin, flat.z))
 }
 
 /// Returns the index of the first of the four entries around `x`, which is in [0, 1], and the
@@ -137,7 +137,7 @@ mod tests {
         for (cosine, roughness) in [(0.9, 0.3), (0.5, 0.6), (0.2, 0.9), (0.7, 1.0)] {
             let ggx = Ggx::new(roughness, 0.0);
             // A slight anisotropy is enough to select the anisotropic table.
-            let uneven = Ggx { alpha: Vec2::new(ggx.alpha.x, ggx.alpha.x * (1.0 - 1e-6)) };
+            let uneven = Ggx::of(Vec2::new(ggx.alpha.x, ggx.alpha.x * (1.0 - 1e-6)));
             let (own, even) = (albedo::ggx_for(uneven, direction(cosine), roughness), albedo::ggx(cosine, roughness));
             assert!((own - even).abs() < 3e-3, "{cosine} {roughness}: {own} {even}");
         }

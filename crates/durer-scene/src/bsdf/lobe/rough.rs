@@ -1,9 +1,9 @@
-//! Rough reflection by GGX facets, with the reflectance of a metal, a dielectric, a thin sheet or a
+//! Rough reflection by microfacets, with the reflectance of a metal, a dielectric, a thin sheet or a
 //! film.
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::film::Film;
-use crate::bsdf::fresnel::{self, F82, Sheet};
+use crate::bsdf::fresnel::{self, MetalCurve, Sheet};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -12,7 +12,7 @@ use crate::spectrum::Spectrum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
     /// Metal.
-    Metal(F82),
+    Metal(MetalCurve),
     /// Dielectric boundary, with the index behind it relative to the index in front of it.
     Dielectric(f32),
     /// Reflection by a thin dielectric sheet.
@@ -27,7 +27,7 @@ impl Facet {
     /// Returns the reflectance at a cosine, or the transmittance for a sheet that transmits.
     pub fn at(&self, cosine: f32) -> Spectrum {
         match *self {
-            Facet::Metal(f82) => f82.at(cosine),
+            Facet::Metal(curve) => curve.at(cosine),
             Facet::Dielectric(eta) => Spectrum::splat(fresnel::dielectric(cosine, eta)),
             Facet::Sheet(sheet) => sheet.at(cosine).0,
             Facet::Film(film) => film.reflected(cosine),
@@ -66,9 +66,9 @@ impl Scatter for RoughReflection {
         let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return NO_SCATTERING };
         let density = self.ggx.density(h) / (4.0 * wo.z);
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
-        let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
+        let value = density / self.ggx.hiding(hidden_o, hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
         // The pdf is that of the visible normals, divided by 4 wo·h. The factor wo·h cancels.
-        (value, density / (1.0 + hidden_o))
+        (value, density / self.ggx.sampling_divisor(wo, h, hidden_o))
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {

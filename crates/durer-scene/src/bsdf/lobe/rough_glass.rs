@@ -63,12 +63,12 @@ impl Scatter for RoughGlass {
         let Some((h, spread)) = facet(wo, wi, self.eta) else { return NO_SCATTERING };
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let facets = self.share(passes, wo.dot(h)) * self.ggx.density(h) * wo.dot(h) / wo.z * spread;
-        let value = facets / (1.0 + hidden_o + hidden_i);
+        let value = facets / self.ggx.hiding(hidden_o, hidden_i);
         let value = match passes {
             true => self.transmitted * (value / (self.eta * self.eta)),
             false => self.reflected * value,
         };
-        (value, facets / (1.0 + hidden_o))
+        (value, facets / self.ggx.sampling_divisor(wo, h, hidden_o))
     }
 
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample> {

@@ -119,6 +119,10 @@ fn staging_adds_only_missing_parts() {
     // The background of a scene with its own light is black. In a scene without any light, the
     // background is not black, so that something is visible.
     assert_eq!(same.background.color, Vec3::ZERO);
+    // A background that the file sets stays, even if it has the default colour.
+    let mut written = complete.clone();
+    written.background_span = Span { file: 0, start: 1, end: 2 };
+    assert_eq!(staged(written, &SceneDefaults::default()).background, Background::default());
     let none = SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() };
     assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());
     let requested = SceneDefaults {

@@ -1,23 +1,13 @@
-"""Compares renders of equal scenes by Dürer and Mitsuba 3, pixel by pixel.
-
-    python peers.py DURER [--samples 1024] [--only TEXT]
-
-Both render each scene 32 times with different seeds. For each channel of each pixel, Welch's t-test
-checks whether the means can be equal. With Sidak's correction for the number of pixels, at least
-99.75 % of them must be (the criterion of Mitsuba's own image tests). The means of the whole
-pictures must agree within 0.2 % and three standard errors.
-"""
-
-import argparse
-import pathlib
-import subprocess
-import tempfile
+"""Scenes in Dürer's language, and Mitsuba's dictionaries of the same scenes."""
 
 import mitsuba as mi
 import numpy as np
 
-SIZE, RUNS = 32, 32
-T = None
+SIZE = 32
+
+
+def T(matrix):
+    return mi.ScalarTransform4f(matrix)
 
 
 def words(values):
@@ -29,7 +19,12 @@ def rgb(color):
 
 
 class Scene:
-    """A scene for both programs: Mitsuba's dictionary, and the text of Dürer's scene file."""
+    """A scene for both programs: Mitsuba's dictionary, and the text of Dürer's scene file.
+
+    The names of the first fields are those of `scene.Scene`.
+    """
+    kind, extension, samples = "Dürer's language", "txt", 128
+    warns, differs, mitsuba_is_wrong = (), "", ""
 
     def __init__(self, name, bounces=6, volumes=False, eye=(0, 0, 3.9), direction=(0, 0, -1), fov=39):
         self.name, self.bounces = name, bounces
@@ -40,7 +35,7 @@ class Scene:
             "integrator": {"type": kind, "max_depth": bounces + 2, "rr_depth": 1000},
             "sensor": {
                 "type": "perspective", "fov": fov, "fov_axis": "y",
-                "to_world": T().look_at(origin=list(eye), target=target, up=[0, 1, 0]),
+                "to_world": mi.ScalarTransform4f().look_at(origin=list(eye), target=target, up=[0, 1, 0]),
                 "film": {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "pixel_format": "rgb"},
                 "sampler": {"type": "independent"},
             },
@@ -48,6 +43,19 @@ class Scene:
         self.camera = f"PerspectiveCamera {{ center {words(eye)} direction {words(direction)} up 0 1 0 angle {fov} }}"
         self.background, self.fog, self.lights, self.materials, self.objects = (0, 0, 0), "", [], [], []
 
+    @property
+    def slug(self):
+        return f"own-{self.name}".replace(" ", "-")
+
+    @property
+    def options(self):
+        return ["--size", f"{SIZE}x{SIZE}", "--integrator", "path", "--bounces", str(self.bounces)]
+
+    def load(self, mitsuba, path):
+        mitsuba.set_variant("scalar_rgb")
+        return mitsuba.load_dict(self.theirs)
+
+    @property
     def text(self):
         lights = f"Lights {{ {' '.join(self.lights)} }}\n" if self.lights else ""
         return (f"{self.camera}\nBackground {{ color {words(self.background)} }}\n{self.fog}\n{lights}"
@@ -204,73 +212,3 @@ def scenes():
     s.sphere((0, 0, 0), 0.5, matte((0.5, 0.5, 0.5)))
     s.sphere((2, 3, 1), 0.8, None, (5, 4, 4))
     yield s
-
-
-def pfm(path):
-    with open(path, "rb") as file:
-        file.readline()
-        width, height = map(int, file.readline().split())
-        file.readline()
-        return np.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1].astype(float)
-
-
-def compare(program, scene, samples, folder):
-    source, picture = folder / "scene.txt", folder / "picture.pfm"
-    source.write_text(scene.text())
-    each = max(samples // RUNS, 1)
-    ours = []
-    for seed in range(RUNS):
-        subprocess.run([program, "render", source, "-o", picture, "--size", f"{SIZE}x{SIZE}", "--samples", str(each), "--filter", "box",
-                        "--integrator", "path", "--bounces", str(scene.bounces), "--seed", str(seed), "-q", "--restart"], check=True)
-        ours.append(pfm(picture))
-    loaded = mi.load_dict(scene.theirs)
-    theirs = [np.array(mi.render(loaded, spp=each, seed=seed)).astype(float) for seed in range(RUNS)]
-    ours, theirs = np.array(ours), np.array(theirs)
-    square = (ours.var(0, ddof=1) + theirs.var(0, ddof=1)) / RUNS
-    # Pixels without randomness differ only by rounding.
-    t2 = (ours.mean(0) - theirs.mean(0)) ** 2 / np.maximum(square, (1e-4 * theirs.mean(0)) ** 2 + 1e-12)
-    freedom = 2 * (RUNS - 1)
-    # Convert Student's t to a normal deviate: Wallace 1959.
-    z = np.sqrt(freedom * np.log1p(t2 / freedom)) * (8 * freedom + 1) / (8 * freedom + 3)
-    # Sidak's correction for n pixels, two-sided: 1 - (1 - 0.01)^(1 / n).
-    alpha = 1 - (1 - 0.01) ** (1 / SIZE**2)
-    limit = deviate(alpha / 2)
-    accepted = (z < limit).mean()
-    means = ours.mean((1, 2, 3)), theirs.mean((1, 2, 3))
-    ratio = means[0].mean() / means[1].mean()
-    error = np.sqrt((means[0].var(ddof=1) + means[1].var(ddof=1)) / RUNS) / means[1].mean()
-    good = accepted >= 0.9975 and abs(ratio - 1) <= max(0.002, 3 * error)
-    print(f"| {scene.name} | {scene.bounces} | {ratio:.5f} ± {error:.5f} | {100 * accepted:.2f} % | {'agrees' if good else 'DIFFERS'} |", flush=True)
-    return good
-
-
-def deviate(share):
-    """Returns the normal deviate with a given upper tail probability, by bisection."""
-    from math import erfc, sqrt
-    low, high = 0.0, 10.0
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if 0.5 * erfc(middle / sqrt(2)) > share else (low, middle)
-    return low
-
-
-def main():
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("program")
-    arguments.add_argument("--samples", type=int, default=1024)
-    arguments.add_argument("--only", default="")
-    given = arguments.parse_args()
-    # This variant needs no compiler.
-    mi.set_variant("scalar_rgb")
-    global T
-    T = mi.ScalarTransform4f
-    print("| scene | bounces | mean, ours over theirs | equal pixel channels | |\n| --- | --- | --- | --- | --- |")
-    with tempfile.TemporaryDirectory() as folder:
-        chosen = [scene for scene in scenes() if given.only in scene.name]
-        good = [compare(given.program, scene, given.samples, pathlib.Path(folder)) for scene in chosen]
-    print(f"\n{sum(good)} of {len(good)} scenes agree; {given.samples} samples per pixel each, Mitsuba {mi.__version__}, {mi.variant()}.")
-    raise SystemExit(0 if all(good) else 1)
-
-
-if __name__ == "__main__":
-    main()

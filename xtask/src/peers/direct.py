@@ -1,7 +1,7 @@
 """Compares the cost of direct light from point lights: Dürer's `whitted`, Mitsuba 3's `direct` and
 Blender's Cycles on equal scenes.
 
-    python peers_direct.py DURER MESHES [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only
+    python direct.py DURER MESHES [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only
     TEXT]
 
 The programs render each scene in turn, with the same camera, filter and number of samples, one hit
@@ -82,8 +82,8 @@ def cycles(path):
 def scenes(meshes, folder):
     """Yields scenes with point lights and triangles; a scene with a sphere has no triangles."""
     import numpy as np
-    from peers import Scene
-    from peers_time import mesh, read_ply, write_ply
+    from own import Scene
+    from speed import mesh, read_ply, write_ply
 
     def phong(c):
         return (f"PhongMaterial {{ diffuseColor {c[0]} {c[1]} {c[2]} specularColor 0 0 0 }}",
@@ -144,10 +144,10 @@ def scenes(meshes, folder):
 def race(given, scene, folder):
     import mitsuba as mi
     import numpy as np
-    from peers import pfm
-    from peers_time import spent
+    from picture import read_pfm
+    from speed import spent
     source, picture = folder / "scene.txt", folder / "picture.pfm"
-    source.write_text(scene.text())
+    source.write_text(scene.text)
 
     def ours(samples):
         subprocess.run([given.program, "render", source, "-o", picture, "--size", f"{given.side}x{given.side}", "--samples", str(samples),
@@ -163,7 +163,7 @@ def race(given, scene, folder):
         own.append(spent(lambda: ours(given.samples))[1] - one)
         drawn, took = spent(lambda: theirs(given.samples, seed))
         other.append(took)
-    means = [pfm(picture).mean(), drawn.mean()]
+    means = [read_pfm(picture).mean(), drawn.mean()]
     row = [f"{min(own):.2f} s", f"{min(other):.2f} s", f"**{min(own) / min(other):.2f}**"]
     if scene.triangles is None:
         row += ["", ""]
@@ -186,12 +186,12 @@ def race(given, scene, folder):
 def main():
     if sys.argv[1:2] == ["--cycles"]:
         return cycles(sys.argv[2])
-    import peers_time
-    given = peers_time.begun(side=512, samples=16, runs=3, threads=2)
+    import speed
+    given = speed.begun(side=512, samples=16, runs=3, threads=2)
     print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, "
-          f"Mitsuba {peers_time.mi.__version__}\n\n| scene | ours | Mitsuba | ours over its | Cycles | ours over its | means |\n"
+          f"Mitsuba {speed.mi.__version__}\n\n| scene | ours | Mitsuba | ours over its | Cycles | ours over its | means |\n"
           "| --- | --- | --- | --- | --- | --- | --- |")
-    peers_time.each(given, scenes, race)
+    speed.each(given, scenes, race)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Compares the time to equal noise of Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes, with the
 best of Mitsuba's settings for each scene.
 
-    python peers_time.py DURER MESHES [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only
+    python speed.py DURER MESHES [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only
     TEXT]
 
 Both render each scene in turn, with the same camera, filter, depth and number of samples, and
@@ -37,8 +37,8 @@ if "DRJIT_LIBLLVM_PATH" not in os.environ:
 import drjit as dr
 import mitsuba as mi
 import numpy as np
-import peers
-from peers import Scene, lamp, matte, pfm, rgb
+from own import Scene, lamp, matte, rgb
+from picture import read_pfm
 
 
 def read_ply(path):
@@ -159,7 +159,7 @@ def spent(work):
 
 def race(given, scene, folder):
     source, picture = folder / "scene.txt", folder / "picture.pfm"
-    text = scene.text()
+    text = scene.text
     environment = getattr(scene, "environment", None)
     source.write_text(text.replace("Background { color", f"Background {{ {environment} color") if environment else text)
     side = given.side
@@ -168,7 +168,7 @@ def race(given, scene, folder):
         subprocess.run([given.program, "render", source, "-o", picture, "--size", f"{side}x{side}", "--samples", str(samples), "--filter", "box",
                         "--integrator", "path", "--bounces", str(scene.bounces), "--seed", str(seed), "--threads", str(given.threads),
                         "-q", "--restart", *options], check=True)
-        return pfm(picture)
+        return read_pfm(picture)
 
     scene.theirs["sensor"]["film"].update(width=side, height=side)
 
@@ -217,7 +217,6 @@ def begun(**numbers):
     given = arguments.parse_args()
     mi.set_variant("llvm_ad_rgb")
     dr.set_thread_count(given.threads)
-    peers.T = mi.ScalarTransform4f
     return given
 
 
