@@ -99,7 +99,7 @@ impl Export<'_> {
             Camera::Orthographic(flat) => {
                 (view.half, view.is_orthographic) = (0.5 * f64::from(flat.size), true);
                 mirror(&mut view, flat.handedness);
-                view.near = flat.near.unwrap_or(0.0);
+                (view.near, view.far) = (flat.near.unwrap_or(0.0), flat.far);
                 if flat.near != Some(0.0) {
                     self.warn_lost(format!(
                         "orthographic cameras of {program} see nothing behind their centre: move the camera back if \

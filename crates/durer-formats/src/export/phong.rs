@@ -39,7 +39,10 @@ impl Export<'_> {
         // Dürer scales all parts down if they would reflect more light than arrives.
         let scale = (color + bound * m.specular_color + mirror + through).max_element().max(1.0);
         let metal = |color: Vec3, alpha: f32| {
-            Surface::Opaque(Opaque::Metal { f0: color, f82: color, picture: None, rough: Rough::of_alpha(alpha) }, true)
+            Surface::Opaque(
+                Opaque::Metal { f0: color, f82: color, index: None, picture: None, rough: Rough::of_alpha(alpha) },
+                true,
+            )
         };
         let matte = |color: Vec3| {
             Surface::Opaque(

@@ -1,7 +1,7 @@
 //! Principled materials as mixes of simple surfaces.
 
 use super::Export;
-use super::surface::{Mask, Opaque, Paint, Rough, Surface};
+use super::surface::{Mask, MetalIndex, Opaque, Paint, Rough, Surface};
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::bsdf::layers::opaque_ior;
 use durer_scene::bsdf::microfacet::Ggx;
@@ -64,7 +64,9 @@ impl Export<'_> {
         let (base, weight) = (self.base_color(m, program), m.specular_weight.min(1.0));
         let (f0, f82) = (weight * base, weight * schlick_82(base) * m.specular_color);
         let rough = self.rough(m, program);
-        Surface::Opaque(Opaque::Metal { f0, f82: f82.min(Vec3::ONE), picture, rough }, m.backs != Backs::Black)
+        let tint = weight * m.specular_color;
+        let index = m.metal_ior.map(|eta| MetalIndex { eta, k: m.metal_extinction, tint });
+        Surface::Opaque(Opaque::Metal { f0, f82: f82.min(Vec3::ONE), index, picture, rough }, m.backs != Backs::Black)
     }
 
     fn clear(&mut self, m: &PrincipledMaterial, program: &str) -> Surface {
@@ -182,7 +184,7 @@ impl Export<'_> {
                 )),
             }
         }
-        Rough { alpha, picture }
+        Rough { alpha, facets: m.specular_facets, picture }
     }
 
     /// Returns a picture of numbers, in which `channel` is used if the picture does not select one.

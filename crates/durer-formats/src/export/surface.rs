@@ -4,7 +4,7 @@ use super::Export;
 use crate::medium::Medium;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Facets, Walls};
 use durer_scene::material::{Pattern as _, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{Material, TextureImage};
@@ -36,11 +36,12 @@ pub(crate) enum Surface {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Opaque {
     Diffuse(Paint),
-    /// Metal, given by its reflectance at normal incidence and at 82 degrees, and by a picture that
-    /// multiplies both.
+    /// Metal, given by its reflectance at normal incidence and at 82 degrees, or by its index, and
+    /// by a picture that multiplies them.
     Metal {
         f0: Vec3,
         f82: Vec3,
+        index: Option<MetalIndex>,
         picture: Option<TextureImage>,
         rough: Rough,
     },
@@ -55,6 +56,14 @@ pub(crate) enum Opaque {
     },
 }
 
+/// Complex index of refraction of a metal, and a factor on its reflectance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MetalIndex {
+    pub eta: Vec3,
+    pub k: Vec3,
+    pub tint: Vec3,
+}
+
 /// Colour and a picture that multiplies it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Paint {
@@ -64,10 +73,12 @@ pub(crate) struct Paint {
     pub is_linear: bool,
 }
 
-/// Roughness: GGX's alpha along u and v, and a picture that multiplies the square root of alpha.
+/// Roughness: alpha along u and v, the distribution of the facets, and a picture that multiplies
+/// the square root of alpha.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rough {
     pub alpha: [f32; 2],
+    pub facets: Facets,
     pub picture: Option<TextureImage>,
 }
 
@@ -102,11 +113,11 @@ impl Paint {
 
 impl Rough {
     pub fn of_alpha(alpha: f32) -> Rough {
-        Rough { alpha: [alpha; 2], picture: None }
+        Rough { alpha: [alpha; 2], facets: Facets::Ggx, picture: None }
     }
 
     pub fn is_smooth(&self) -> bool {
-        Ggx { alpha: self.alpha.into() }.is_smooth()
+        Ggx { alpha: self.alpha.into(), facets: self.facets }.is_smooth()
     }
 }
 

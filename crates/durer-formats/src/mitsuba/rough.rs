@@ -43,14 +43,16 @@ impl Boundary {
         color * (1.0 - self.inside) / (1.0 - color * self.inside)
     }
 
-    /// Returns the colour in Mitsuba for which [`Boundary::base`] returns `base`.
+    /// Returns the colour in Mitsuba of a base that looks like a base of the colour `base` below
+    /// the same boundary in Dürer. If `fades` is true, each reflection between the base and the
+    /// boundary tints the light again, in both programs.
     pub fn color(&self, base: f32, fades: bool) -> f32 {
-        let (mut low, mut high) = (0.0, 2.0);
-        for _ in 0..32 {
-            let middle = 0.5 * (low + high);
-            if self.base(middle, fades) < base { low = middle } else { high = middle }
+        if !fades {
+            return base / self.below();
         }
-        0.5 * (low + high)
+        // The inverse of `faded`.
+        let shown = self.faded(base) / self.below();
+        shown / (1.0 - self.inside + shown * self.inside)
     }
 
     /// Returns the mean radiance of a diffuse base seen through the boundary in Mitsuba, divided by
@@ -141,10 +143,12 @@ mod tests {
     fn light_that_is_tinted_by_each_bounce_is_a_geometric_series() {
         // A share F of the light returns to the base at each bounce: c (1 - F) / (1 - c F).
         let smooth = Boundary::new(1.5, 0.0, false);
-        let sum: f32 = (0..200).map(|bounce| 0.6 * (0.6 * smooth.inside).powi(bounce)).sum();
+        let terms = std::iter::successors(Some(0.6_f32), |term| Some(term * 0.6 * smooth.inside));
+        let sum: f32 = terms.take(200).sum();
         assert!((smooth.faded(0.6) - sum * (1.0 - smooth.inside)).abs() < 1e-5);
         // By conservation of étendue, 1 - inside = (1 - outside) / index^2; `through` is 1 - outside.
         assert!((1.0 - smooth.inside - smooth.through / 2.25).abs() < 1e-3, "{}", smooth.inside);
         assert_eq!((smooth.below(), smooth.faded(1.0)), (1.0, 1.0));
+        assert!((smooth.color(0.6, true) - 0.6).abs() < 1e-5 && smooth.color(0.6, false) == 0.6);
     }
 }

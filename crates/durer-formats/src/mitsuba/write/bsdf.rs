@@ -4,8 +4,9 @@ use super::element::Element;
 use super::{PROGRAM, Writer};
 use crate::export::metal::index_of_refraction;
 use crate::export::picture::PictureFile;
-use crate::export::surface::{Opaque, Paint, Rough, Surface};
+use crate::export::surface::{MetalIndex, Opaque, Paint, Rough, Surface};
 use crate::mitsuba::rough::Boundary;
+use durer_scene::material::principled::Facets;
 use durer_scene::math::Vec3;
 use durer_scene::scene::TextureImage;
 use durer_scene::texture::{Mapping, Wrap};
@@ -95,18 +96,18 @@ impl Writer<'_> {
     fn opaque(&mut self, opaque: &Opaque) -> Element {
         match opaque {
             Opaque::Diffuse(paint) => self.paint(Element::plugin("bsdf", "diffuse"), "reflectance", paint),
-            Opaque::Metal { f0, f82, picture, rough } => self.metal([*f0, *f82], picture.as_ref(), rough),
+            Opaque::Metal { f0, f82, index, picture, rough } => {
+                self.metal([*f0, *f82], *index, picture.as_ref(), rough)
+            }
             Opaque::Plastic { base, ior, rough, specular, darkens } => {
                 let is_smooth = rough.is_smooth();
                 let kind = if is_smooth { "plastic" } else { "roughplastic" };
                 let mut paint = base.clone();
                 if !is_smooth {
                     // The inverse of the reader's conversion.
-                    let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), false);
-                    paint.color = match &base.picture {
-                        Some(_) => base.color / boundary.below(darkens.then_some(0.5)),
-                        None => base.color.map(|color| boundary.color(color, *darkens)),
-                    };
+                    let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), rough.facets == Facets::Beckmann);
+                    let fades = *darkens && base.picture.is_none();
+                    paint.color = base.color.map(|color| boundary.color(color, fades));
                 }
                 let plastic = self.rough(Element::plugin("bsdf", kind), rough, false);
                 let plastic = plastic.float("int_ior", ior).float("ext_ior", 1).boolean("nonlinear", *darkens);
@@ -117,9 +118,19 @@ impl Writer<'_> {
         }
     }
 
-    fn metal(&mut self, [f0, f82]: [Vec3; 2], picture: Option<&TextureImage>, rough: &Rough) -> Element {
+    fn metal(
+        &mut self,
+        [f0, f82]: [Vec3; 2],
+        index: Option<MetalIndex>,
+        picture: Option<&TextureImage>,
+        rough: &Rough,
+    ) -> Element {
         let kind = if rough.is_smooth() { "conductor" } else { "roughconductor" };
         let metal = self.rough(Element::plugin("bsdf", kind), rough, true);
+        if let Some(MetalIndex { eta, k, tint }) = index {
+            let paint = Paint { color: tint, picture: picture.cloned(), is_linear: false };
+            return self.paint(metal.rgb("eta", eta).rgb("k", k), "specular_reflectance", &paint);
+        }
         if let Some(picture) = picture {
             let paint = Paint { color: f0, picture: Some(picture.clone()), is_linear: false };
             return self.paint(metal.text("material", "none"), "specular_reflectance", &paint);
@@ -139,7 +150,8 @@ impl Writer<'_> {
         if rough.is_smooth() {
             return element;
         }
-        let element = element.text("distribution", "ggx");
+        let distribution = if rough.facets == Facets::Beckmann { "beckmann" } else { "ggx" };
+        let element = element.text("distribution", distribution);
         let [u, v] = rough.alpha;
         if let Some(picture) = rough.picture.as_ref().filter(|_| can_stretch) {
             let file = self.export.number_file(picture, &format!("alpha-{u}"), |x| u * x * x);

@@ -4,13 +4,18 @@ use super::element::Element;
 use super::{PROGRAM, Writer};
 use crate::medium::Medium;
 use durer_scene::math::Vec3;
+use durer_scene::scene::Emitters;
 use glam::{DAffine3, DVec3};
 
 impl Writer<'_> {
     pub(super) fn integrator(&self) -> Element {
         let kind = if self.has_medium { "volpath" } else { "path" };
         // `max_depth` counts the segments of a path, which are two more than the bounces.
-        Element::plugin("integrator", kind).integer("max_depth", self.export.bounces() + 2)
+        let integrator = Element::plugin("integrator", kind).integer("max_depth", self.export.bounces() + 2);
+        match self.export.scene.background.emitters {
+            Emitters::Hidden => integrator.boolean("hide_emitters", true),
+            Emitters::Shown => integrator,
+        }
     }
 
     pub(super) fn sensor(&mut self) -> Option<Element> {
@@ -31,6 +36,9 @@ impl Writer<'_> {
             // The view is 2 units of camera space wide.
             let half = view.half * w / larger;
             let back = DAffine3::from_translation(f64::from(view.near) * forward);
+            if let Some(far) = view.far {
+                sensor = sensor.float("far_clip", far - view.near);
+            }
             sensor = sensor.transform("to_world", &(back * frame * DAffine3::from_scale(DVec3::new(half, half, 1.0))));
         } else {
             sensor = sensor.float("fov", view.angle()).text("fov_axis", "larger");

@@ -4,8 +4,9 @@ use super::text::Directive;
 use super::{PROGRAM, Writer};
 use crate::export::metal::index_of_refraction;
 use crate::export::picture::PictureFile;
-use crate::export::surface::{Opaque, Paint, Rough, Surface};
+use crate::export::surface::{MetalIndex, Opaque, Paint, Rough, Surface};
 use durer_scene::bsdf::fresnel;
+use durer_scene::material::principled::Facets;
 use durer_scene::math::Vec3;
 use durer_scene::scene::TextureImage;
 use durer_scene::texture::{Mapping, Wrap};
@@ -93,14 +94,20 @@ impl Writer<'_> {
             Opaque::Diffuse(paint) => {
                 self.paint(directive.string("type", "diffuse"), "reflectance", paint, "color", |color| color)
             }
-            Opaque::Metal { f0, f82, picture, rough } => {
+            Opaque::Metal { f0, f82, index, picture, rough } => {
                 let metal = self.rough(directive.string("type", "conductor"), rough);
-                match picture {
-                    Some(picture) => {
+                match (index, picture) {
+                    (Some(MetalIndex { eta, k, tint }), None) => {
+                        if *tint != Vec3::ONE {
+                            self.export.warn_lost("metals of pbrt have no tint: it is left out");
+                        }
+                        metal.rgb("eta", *eta).rgb("k", *k)
+                    }
+                    (_, Some(picture)) => {
                         let paint = Paint { color: *f0, picture: Some(picture.clone()), is_linear: false };
                         self.paint(metal, "reflectance", &paint, "color", |color| color)
                     }
-                    None => {
+                    (None, None) => {
                         let index = std::array::from_fn::<_, 3, _>(|i| index_of_refraction(f0[i], f82[i]));
                         let column = |k: usize| Vec3::from_array(index.map(|pair| pair[k]));
                         metal.rgb("eta", column(0)).rgb("k", column(1))
@@ -149,10 +156,13 @@ impl Writer<'_> {
         }
     }
 
-    /// Adds GGX's alpha.
+    /// Adds alpha.
     fn rough(&mut self, directive: Directive, rough: &Rough) -> Directive {
         if rough.is_smooth() {
             return directive.float("roughness", 0);
+        }
+        if rough.facets == Facets::Beckmann {
+            self.export.warn_lost("pbrt has no facets by Beckmann: GGX is written, whose highlights have longer tails");
         }
         let directive = directive.boolean("remaproughness", false);
         let [u, v] = rough.alpha;

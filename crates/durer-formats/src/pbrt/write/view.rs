@@ -4,7 +4,10 @@ use super::text::{Directive, transform};
 use super::{PROGRAM, Writer};
 use crate::medium::Medium;
 use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::Emitters;
 use glam::{DAffine3, DVec2};
+
+const NO_CLIPPING: &str = "cameras of pbrt have no clipping planes: everything is visible";
 
 impl Writer<'_> {
     pub(super) fn view(&mut self) -> String {
@@ -17,6 +20,9 @@ impl Writer<'_> {
         let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         let mut text = film.string("filename", &format!("{name}.exr")).line();
         text += &Directive::new("Sampler", "zsobol").integer("pixelsamples", self.export.samples()).line();
+        if self.export.scene.background.emitters == Emitters::Hidden {
+            self.export.warn_lost("the camera of pbrt sees all emitters, hidden ones too");
+        }
         // `maxdepth` includes the first scattering event.
         text += &Directive::new("Integrator", "volpath").integer("maxdepth", self.export.bounces() + 1).line();
         text += &self.fog();
@@ -45,6 +51,9 @@ impl Writer<'_> {
         let back = DAffine3::from_translation(f64::from(if view.is_orthographic { view.near } else { 0.0 }) * forward);
         let text = transform(&(back * view.frame([right, up, forward])).inverse());
         if view.is_orthographic {
+            if view.far.is_some() {
+                self.export.warn_lost(NO_CLIPPING);
+            }
             let half = view.half * sides / sides.max_element();
             return text
                 + &Directive::new("Camera", "orthographic")
@@ -65,7 +74,7 @@ impl Writer<'_> {
             camera = camera.float("lensradius", view.lens_radius).float("focaldistance", view.focus_distance);
         }
         if view.near > 0.0 || view.far.is_some() {
-            self.export.warn_lost("cameras of pbrt have no clipping planes: everything is visible");
+            self.export.warn_lost(NO_CLIPPING);
         }
         text + &camera.line()
     }
