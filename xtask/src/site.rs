@@ -73,20 +73,21 @@ fn api(root: &Path, folder: &Path) -> Result<()> {
 
 /// HTML at the top of each page of the library's documentation: links to the playground and the
 /// book, and the playground itself on the first page.
-const API_LINKS: &str = r#"<nav id="durer-site" style="padding: 8px 16px"></nav>
-<script>
-{
-    const vars = document.querySelector('meta[name="rustdoc-vars"]').dataset;
-    const site = vars.rootPath + "../";
-    const nav = document.getElementById("durer-site");
-    nav.innerHTML = `<a href="${site}#/viewer">Playground</a> · <a href="${site}book/index.html">Book</a>`;
+const API_LINKS: &str = r#"<script>
+addEventListener("DOMContentLoaded", () => {
+    const site = document.querySelector('meta[name="rustdoc-vars"]').dataset.rootPath + "../";
+    const page = document.querySelector("main");
+    page.insertAdjacentHTML(
+        "afterbegin",
+        `<nav id="durer-site"><a href="${site}#/viewer">Playground</a> · <a href="${site}book/index.html">Book</a></nav>`,
+    );
     if (/\/durer\/(index\.html)?$/.test(location.pathname)) {
-        addEventListener("DOMContentLoaded", () => document.querySelector("main section, main").insertAdjacentHTML(
+        page.insertAdjacentHTML(
             "beforeend",
             `<iframe src="${site}" title="Playground" loading="lazy" style="width:100%;height:80vh;border:0"></iframe>`,
-        ));
+        );
     }
-}
+});
 </script>
 "#;
 

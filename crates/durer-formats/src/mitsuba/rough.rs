@@ -146,7 +146,8 @@ mod tests {
         let terms = std::iter::successors(Some(0.6_f32), |term| Some(term * 0.6 * smooth.inside));
         let sum: f32 = terms.take(200).sum();
         assert!((smooth.faded(0.6) - sum * (1.0 - smooth.inside)).abs() < 1e-5);
-        // By conservation of étendue, 1 - inside = (1 - outside) / index^2; `through` is 1 - outside.
+        // By conservation of étendue, 1 - inside = (1 - outside) / index^2, where `through` is
+        // 1 - outside.
         assert!((1.0 - smooth.inside - smooth.through / 2.25).abs() < 1e-3, "{}", smooth.inside);
         assert_eq!((smooth.below(), smooth.faded(1.0)), (1.0, 1.0));
         assert!((smooth.color(0.6, true) - 0.6).abs() < 1e-5 && smooth.color(0.6, false) == 0.6);

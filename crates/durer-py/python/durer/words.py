@@ -52,6 +52,8 @@ class Background(Thing):
     environment_rotation: number. Rotation of the environment about y, in degrees.
 
     environment_scale: three numbers. Factor on the environment.
+
+    emitters: `shown`, `hidden`; default shown. `hidden`: the camera sees neither emissive surfaces nor the background, which still light the scene and are seen in mirrors, as with Mitsuba's `hide_emitters`; `path` only.
     """
 
     def __init__(
@@ -76,6 +78,7 @@ class Background(Thing):
         ground_reflectance: Optional[float] = None,
         environment_rotation: Optional[float] = None,
         environment_scale: Optional[npt.ArrayLike] = None,
+        emitters: Optional[Literal["shown", "hidden"]] = None,
     ) -> None:
         super().__init__("Background", [
             ("color", color),
@@ -97,6 +100,7 @@ class Background(Thing):
             ("groundReflectance", ground_reflectance),
             ("environmentRotation", environment_rotation),
             ("environmentScale", environment_scale),
+            ("emitters", emitters),
         ])
 
 
@@ -237,6 +241,8 @@ class OrthographicCamera(Camera):
 
     near: number. Distance from `center` to the near plane, for plans and sections. Without it, objects behind `center` are visible.
 
+    far: number. Distance from `center` to the far plane; unlimited by default.
+
     handedness: `right`, `left`; default right. Handedness of the coordinate system; `left` mirrors the picture horizontally.
     """
 
@@ -248,6 +254,7 @@ class OrthographicCamera(Camera):
         up: npt.ArrayLike,
         size: float,
         near: Optional[float] = None,
+        far: Optional[float] = None,
         handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("OrthographicCamera", [
@@ -256,6 +263,7 @@ class OrthographicCamera(Camera):
             ("up", up),
             ("size", size),
             ("near", near),
+            ("far", far),
             ("handedness", handedness),
         ])
 
@@ -1019,6 +1027,8 @@ class PrincipledMaterial(Material):
 
     metallic_roughness_texture: path. Texture whose green channel multiplies `specularRoughness` and whose blue channel multiplies `baseMetalness`.
 
+    specular_facets: `ggx`, `ggxSeparable`, `beckmann`; default ggx. Distribution of the microfacets: `ggx`, as in pbrt and OpenPBR; `ggxSeparable`, where the masking of both directions is multiplied, as in Mitsuba; `beckmann`, Mitsuba's default, also with multiplied masking. `energyCompensation` adds what `ggx` loses.
+
     specular_anisotropy: number, from 0 to 1; default 0. Elongation of the highlight, from 0 (round) to 1.
 
     specular_anisotropy_texture: path. Texture that multiplies `specularAnisotropy`.
@@ -1028,6 +1038,10 @@ class PrincipledMaterial(Material):
     specular_rotation_texture: path. Texture added to `specularRotation`; 1 is a full turn. `file.png:angle` reads a direction from the red and green channels.
 
     specular_ior: number, more than 0; default 1.5. Index of refraction of the inside of the object.
+
+    metal_ior: three numbers. Real part of the complex index of refraction of the metal, for red, green and blue. With it, the metal reflects as Fresnel's equations say, times `specularColor`.
+
+    metal_extinction: three numbers; default 0 0 0. Imaginary part of the complex index of refraction of the metal; needs `metalIor`.
 
     surroundings: `nested`, `ignored`; default nested. `nested`: refraction at glass inside other glass or water uses both indices. `ignored`: `specularIor` is the ratio of the index inside to the index outside, regardless of the surrounding medium, as in pbrt and Mitsuba.
 
@@ -1125,7 +1139,7 @@ class PrincipledMaterial(Material):
 
     bump_height: number; default 0.01. Height difference between white and black in the bump map, in world units; negative if white is deeper.
 
-    normal_bending: `on`, `off`; default on. `on`: bends mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
+    normal_bending: `on`, `off`; default on. `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
 
     opacity: number, from 0 to 1; default 1. Fraction of the surface that is present, from 0 to 1; the remaining light passes through unchanged.
 
@@ -1157,11 +1171,14 @@ class PrincipledMaterial(Material):
         specular_roughness: Optional[float] = None,
         specular_roughness_texture: Optional[str] = None,
         metallic_roughness_texture: Optional[str] = None,
+        specular_facets: Optional[Literal["ggx", "ggxSeparable", "beckmann"]] = None,
         specular_anisotropy: Optional[float] = None,
         specular_anisotropy_texture: Optional[str] = None,
         specular_rotation: Optional[float] = None,
         specular_rotation_texture: Optional[str] = None,
         specular_ior: Optional[float] = None,
+        metal_ior: Optional[npt.ArrayLike] = None,
+        metal_extinction: Optional[npt.ArrayLike] = None,
         surroundings: Optional[Literal["nested", "ignored"]] = None,
         energy_compensation: Optional[Literal["on", "off"]] = None,
         transmission_weight: Optional[float] = None,
@@ -1234,11 +1251,14 @@ class PrincipledMaterial(Material):
             ("specularRoughness", specular_roughness),
             ("specularRoughnessTexture", specular_roughness_texture),
             ("metallicRoughnessTexture", metallic_roughness_texture),
+            ("specularFacets", specular_facets),
             ("specularAnisotropy", specular_anisotropy),
             ("specularAnisotropyTexture", specular_anisotropy_texture),
             ("specularRotation", specular_rotation),
             ("specularRotationTexture", specular_rotation_texture),
             ("specularIor", specular_ior),
+            ("metalIor", metal_ior),
+            ("metalExtinction", metal_extinction),
             ("surroundings", surroundings),
             ("energyCompensation", energy_compensation),
             ("transmissionWeight", transmission_weight),

@@ -170,10 +170,10 @@ pub fn compile(
         } else {
             scene.background.color
         },
+        hides_emitters: scene.background.emitters == scene::Emitters::Hidden,
         // With `path`, a scene without a background is lit only by the lights that it defines. (The
         // Whitted integrator never takes light from the background.) Model files get a grey
         // background instead.
-        hides_emitters: scene.background.emitters == scene::Emitters::Hidden,
         is_black_for_paths: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()

@@ -121,8 +121,8 @@ pub struct Job {
     /// picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<FalseColorScale>,
-    /// What the colour picture shows where camera rays hit nothing; `None` for the light of the
-    /// scene's background.
+    /// Replacement for the background in the colour picture, or `None` for the light of the scene's
+    /// background.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub backdrop: Option<Backdrop>,
 }

@@ -106,7 +106,8 @@ impl World {
             return self.source;
         }
         let Contents { camera, frame, background, ambient, lights, materials, objects, rules, .. } = &self.contents;
-        let resolved = (self.contents.camera_rules, self.contents.hits, self.contents.shading, self.contents.display);
+        let Contents { camera_rules, hits, shading, display, hides_emitters, .. } = &self.contents;
+        let resolved = (camera_rules, hits, shading, display, hides_emitters);
         let mut text =
             format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules, resolved));
         for Object { geometry, to_world, matrices, center, material, normal_length, span: _ } in objects {

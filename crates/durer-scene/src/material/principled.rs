@@ -79,9 +79,9 @@ described! {
         /// multiplies `baseMetalness`.
         metallic_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["metallicRoughnessTexture" in set::DURER];
-        /// Distribution of the microfacets: `ggx`, as in pbrt and OpenPBR; `ggxSeparable`, where the
-        /// masking of both directions is multiplied, as in Mitsuba; `beckmann`, Mitsuba's default,
-        /// also with multiplied masking. `energyCompensation` adds what `ggx` loses.
+        /// Distribution of the microfacets: `ggx`, as in pbrt and OpenPBR; `ggxSeparable`, where
+        /// the masking of both directions is multiplied, as in Mitsuba; `beckmann`, Mitsuba's
+        /// default, also with multiplied masking. `energyCompensation` adds what `ggx` loses.
         specular_facets: Facets = Facets::Ggx, optional, Constraint::Any, ["specularFacets" in set::DURER];
         /// Elongation of the highlight, from 0 (round) to 1.
         specular_anisotropy: f32 = 0.0, optional, Constraint::UnitInterval, ["specularAnisotropy" in set::DURER];
@@ -229,8 +229,8 @@ described! {
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
         bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
-        /// `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave
-        /// the surface. `off`: leaves such points black, as in Mitsuba.
+        /// `on`: bends interpolated and mapped normals that face away from the viewer, so that
+        /// mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
         normal_bending: Switch = Switch::On, optional, Constraint::Any, ["normalBending" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through
         /// unchanged.

@@ -152,9 +152,10 @@ options! {
         /// Take more samples in noisy pixels and fewer in others: a quarter of --samples measures
         /// the noise, and the rest are distributed accordingly
         adaptive: bool = "adaptive", OptionForm::Flag;
-        /// What the camera sees where it sees no object: `transparent`, or a colour as linear light,
-        /// for example 1,1,1 for white. Lighting, reflections and refractions do not change. A model
-        /// without a camera then gets no ground [default: the background of the scene]
+        /// Show something else where the camera sees no object: `transparent`, or a colour as
+        /// linear light, for example 1,1,1 for white. Lighting, reflections and refractions do not
+        /// change. A model without a camera then gets no ground [default: the background of the
+        /// scene]
         background: Background = "background", OptionForm::Value("transparent|R,G,B");
         /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");

@@ -114,7 +114,7 @@ impl OptionValue for (u32, u32) {
     }
 }
 
-/// What a picture shows where nothing is hit.
+/// Background that the camera sees.
 impl OptionValue for Background {
     fn parse(text: &str) -> Result<Self, String> {
         if text == "transparent" {

@@ -26,4 +26,4 @@ def scenes():
     yield "hide_emitters, constant", stage(constant(0.5), BALLS, integrator=x.integrator(hide_emitters=True))
     yield "hide_emitters, seen in a mirror", room(ball(bsdf("conductor"), x=-0.75), shining, hide_emitters=True, max_depth=6)
     yield "hide_emitters, direct", room(BALLS, shining, kind="direct", hide_emitters=True)
-    yield "hide_emitters, lamp before a wall", room(BALLS, rectangle(area(2, 1, 1), size=(0.5, 0.4), at=(0, 1.2, 0.5)), hide_emitters=True, max_depth=6)
+    yield "hide_emitters, panel before a wall", room(BALLS, rectangle(area(2, 1, 1), size=(0.5, 0.4), at=(0, 1.2, 0.5)), hide_emitters=True, max_depth=6)

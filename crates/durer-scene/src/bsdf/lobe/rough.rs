@@ -1,5 +1,5 @@
-//! Rough reflection by microfacets, with the reflectance of a metal, a dielectric, a thin sheet or a
-//! film.
+//! Rough reflection by microfacets, with the reflectance of a metal, a dielectric, a thin sheet or
+//! a film.
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::film::Film;
