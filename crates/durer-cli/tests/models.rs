@@ -158,18 +158,19 @@ fn scenes_for_other_programs_are_saved_with_their_files_or_not_at_all() {
     let folder = TestFolder::new();
     folder.write("a.stl", STL);
     let entries = |folder: &TestFolder| std::fs::read_dir(folder.path(".")).unwrap().count();
-    for name in ["b.xml", "b.pbrt"] {
+    for (name, stem) in [("b.xml", "b"), ("c.pbrt", "c")] {
         let before = entries(&folder);
         folder.expect_failure(1, &format!("convert a.stl -o missing/{name}"), &["does not exist"]);
         folder.expect_failure(2, &format!("convert a.stl -o {name} --to durer"), &["cannot be written"]);
         // A file has the name of the folder for the meshes.
-        folder.write("b", "");
-        folder.expect_failure(1, &format!("convert a.stl -o {name}"), &["cannot create the folder `b`"]);
-        std::fs::remove_file(folder.path("b")).unwrap();
+        folder.write(stem, "");
+        let refused = format!("cannot create the folder `{stem}`");
+        folder.expect_failure(1, &format!("convert a.stl -o {name}"), &[&refused]);
+        std::fs::remove_file(folder.path(stem)).unwrap();
         // A mesh would be written where a folder is.
-        std::fs::create_dir_all(folder.path("b/a.stl.ply")).unwrap();
+        std::fs::create_dir_all(folder.path(&format!("{stem}/a.stl.ply"))).unwrap();
         assert_ne!(folder.run(&format!("convert a.stl -o {name}")).code, Some(0));
-        std::fs::remove_dir_all(folder.path("b")).unwrap();
+        std::fs::remove_dir_all(folder.path(stem)).unwrap();
         assert_eq!(entries(&folder), before, "{name}");
         let output = folder.expect_exit(0, &format!("convert a.stl -o {name}")).out;
         assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");

@@ -272,7 +272,7 @@ impl Reader<'_> {
         // At a depth of 0, not even emitters are visible.
         let is_black = self.scene.render_defaults.no_scattering.is_some_and(|(limit, _)| limit == 0);
         if plugin.boolean(report, "hide_emitters") == Some(true) || is_black {
-            self.scene.background.emitters = Emitters::Hidden;
+            self.scene.background.emitters = Some(Emitters::Hidden);
         }
         plugin.mark_known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
         plugin.warn_unused(report);

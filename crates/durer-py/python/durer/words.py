@@ -53,7 +53,7 @@ class Background(Thing):
 
     environment_scale: three numbers. Factor on the environment.
 
-    emitters: `shown`, `hidden`; default shown. `hidden`: the camera sees neither emissive surfaces nor the background, which still light the scene and are seen in mirrors, as with Mitsuba's `hide_emitters`; `path` only.
+    emitters: `shown`, `hidden`. `hidden`: the camera sees neither emissive surfaces nor the background, which still light the scene and are seen in mirrors, as with Mitsuba's `hide_emitters`; `path` only.
     """
 
     def __init__(

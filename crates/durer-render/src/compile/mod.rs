@@ -170,7 +170,7 @@ pub fn compile(
         } else {
             scene.background.color
         },
-        hides_emitters: scene.background.emitters == scene::Emitters::Hidden,
+        hides_emitters: scene.background.emitters == Some(scene::Emitters::Hidden),
         // With `path`, a scene without a background is lit only by the lights that it defines. (The
         // Whitted integrator never takes light from the background.) Model files get a grey
         // background instead.

@@ -93,7 +93,7 @@ described! {
         environment_scale: Option<Vec3> = None, optional, Constraint::Any, ["environmentScale" in set::DURER];
         /// `hidden`: the camera sees neither emissive surfaces nor the background, which still
         /// light the scene and are seen in mirrors, as with Mitsuba's `hide_emitters`; `path` only.
-        emitters: Emitters = Emitters::Shown, optional, Constraint::Any, ["emitters" in set::DURER];
+        emitters: Option<Emitters> = None, optional, Constraint::Any, ["emitters" in set::DURER];
     }
 }
 

@@ -13,8 +13,8 @@ impl Writer<'_> {
         // `max_depth` counts the segments of a path, which are two more than the bounces.
         let integrator = Element::plugin("integrator", kind).integer("max_depth", self.export.bounces() + 2);
         match self.export.scene.background.emitters {
-            Emitters::Hidden => integrator.boolean("hide_emitters", true),
-            Emitters::Shown => integrator,
+            Some(Emitters::Hidden) => integrator.boolean("hide_emitters", true),
+            Some(Emitters::Shown) | None => integrator,
         }
     }
 

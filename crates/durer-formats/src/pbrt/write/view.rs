@@ -20,7 +20,7 @@ impl Writer<'_> {
         let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         let mut text = film.string("filename", &format!("{name}.exr")).line();
         text += &Directive::new("Sampler", "zsobol").integer("pixelsamples", self.export.samples()).line();
-        if self.export.scene.background.emitters == Emitters::Hidden {
+        if self.export.scene.background.emitters == Some(Emitters::Hidden) {
             self.export.warn_lost("the camera of pbrt sees all emitters, hidden ones too");
         }
         // `maxdepth` includes the first scattering event.
