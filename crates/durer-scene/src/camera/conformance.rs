@@ -136,6 +136,11 @@ fn projection_inverts_rays() {
             let (sample, Some(ray)) = random_ray(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
+            // Nothing is visible if the far plane is in front of the near plane.
+            if ray.t_min >= ray.t_max {
+                skipped += 1;
+                continue;
+            }
             let t = if t < ray.t_max { t } else { 0.5 * (ray.t_min.max(ray.t_max - 1.0) + ray.t_max) };
             // Compute the error of the point in world space, projected to the picture. If this
             // error is large, the projection is ill-conditioned.

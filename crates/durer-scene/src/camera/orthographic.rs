@@ -34,13 +34,6 @@ impl Projection for OrthographicCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn validate(&self) -> Result<(), String> {
-        match (self.near, self.far) {
-            (Some(near), Some(far)) if far <= near => Err(format!("`far` {far} must be more than `near` {near}")),
-            _ => Ok(()),
-        }
-    }
-
     /// Without `near`, the ray extends in both directions, and objects behind `center` are seen at
     /// negative `t`.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
