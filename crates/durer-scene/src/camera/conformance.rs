@@ -138,8 +138,8 @@ fn projection_inverts_rays() {
             let t = random.between(0.5, 20.0);
             // Nothing is visible if the far plane is in front of the near plane.
             if ray.t_min >= ray.t_max {
-                skipped += 1;
-                continue;
+                (checked, skipped) = before;
+                return;
             }
             let t = if t < ray.t_max { t } else { 0.5 * (ray.t_min.max(ray.t_max - 1.0) + ray.t_max) };
             // Compute the error of the point in world space, projected to the picture. If this
