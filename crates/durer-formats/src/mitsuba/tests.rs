@@ -3,12 +3,14 @@
 
 mod bright;
 mod conventions;
+mod materials;
 mod shapes;
 
 use crate::testing::{folder, read_in};
+use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::random::Random;
 use durer_scene::scene::{Material, Object, ObjectKind, Scene};
-use durer_scene::shape::Primitive;
+use durer_scene::shape::{MeshData, Primitive};
 use std::path::Path;
 
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
@@ -20,6 +22,32 @@ fn clean(inner: &str) -> Scene {
     let (scene, messages) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(messages, [""; 0], "{inner}");
     scene.unwrap()
+}
+
+/// Reads a scene whose files are in a folder. The scene must not cause any diagnostics.
+fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
+    let folder = folder(files);
+    let (scene, messages) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(messages, [""; 0], "{inner}");
+    scene.unwrap()
+}
+
+/// Returns a PFM file of 2 x 1 pixels.
+fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
+    let mut bytes = b"PF\n2 1\n-1.0\n".to_vec();
+    pixels.as_flattened().iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes
+}
+
+fn layers(bsdf: &str) -> PrincipledMaterial {
+    let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
+    let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
+    (**layers).clone()
+}
+
+/// Returns the only mesh of a scene.
+fn mesh(scene: &Scene) -> &MeshData {
+    scene.assets.meshes.values().next().unwrap()
 }
 
 /// Returns the objects that have a shape, in order.

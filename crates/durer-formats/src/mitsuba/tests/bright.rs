@@ -1,8 +1,7 @@
 //! Compares brightness with Mitsuba 3.9.1 for projected pictures, daylight, materials in uniform
 //! light, and smoke.
 
-use super::conventions::{clean_in, picture};
-use super::{clean, folder, material, read, read_in};
+use super::{clean, clean_in, folder, material, picture, read, read_in};
 use crate::asset_export::export_assets;
 use crate::folder::FolderSource;
 use durer::load::{LoadOptions, load_text};
@@ -199,8 +198,8 @@ fn ball_albedo_matches_mitsuba() {
         let shown = ball(&format!("<bsdf type='principled'>{color}{bsdf}</bsdf>"));
         assert!((shown / Vec3::from(expected) - 1.0).abs().max_element() < 0.01, "{bsdf}: {shown}");
     }
-    // Known fault: with alpha 0.3, the ball is 2.4 % darker than in Mitsuba since the masking of both
-    // directions is multiplied; the cause has not been found.
+    // Known fault: with alpha 0.3, the ball is 2.4 % darker than in Mitsuba since the masking of
+    // both directions is multiplied; the cause has not been found.
     for (alpha, expected, tolerance) in [(0.1, 0.4910, 0.02), (0.3, 0.3660, 0.03)] {
         let shown = ball(&format!(
             "<bsdf type='roughplastic'><string name='distribution' value='ggx'/><float name='alpha' value='{alpha}'/></bsdf>"

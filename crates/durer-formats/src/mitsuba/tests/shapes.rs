@@ -1,10 +1,197 @@
 //! Tests of conventions of shapes and of their materials, compared with Mitsuba 3.9.1.
 
-use super::conventions::{clean_in, mesh};
-use super::{clean, objects};
+use super::{clean, clean_in, folder, material, mesh, objects, read_in};
 use crate::mitsuba::serialized::tests::{file, stream};
+use durer_scene::material::HairMaterial;
 use durer_scene::math::{Vec2, Vec3};
-use durer_scene::scene::{Material, Scene};
+use durer_scene::scene::{Material, MatrixOp, MatrixRules, ObjectKind, Scene};
+
+#[test]
+fn texture_v_is_flipped() {
+    // In Mitsuba, v = 0 is the upper edge of a picture, but the lower left corner of a rectangle
+    // has the coordinates (0, 0).
+    let scene = clean("<shape type='rectangle'/>");
+    let lower_left = mesh(&scene).positions.iter().position(|p| p.x < 0.0 && p.y < 0.0).unwrap();
+    assert_eq!(mesh(&scene).uvs[lower_left], Vec2::new(0.0, 1.0));
+    let scene = clean("<shape type='rectangle'><boolean name='flip_normals' value='true'/></shape>");
+    let data = mesh(&scene);
+    let [a, b, c] = data.triangles[0].map(|i| data.positions[i as usize]);
+    assert!((b - a).cross(c - a).z < 0.0 && data.normals[0] == Vec3::NEG_Z);
+}
+
+/// Asserts that the normals and the faces of a mesh around the origin point inwards.
+pub(super) fn assert_faces_inwards(scene: &Scene) {
+    let data = mesh(scene);
+    for (corners, normals) in data.triangles.iter().zip(&data.triangle_normals) {
+        let [a, b, c] = corners.map(|i| data.positions[i as usize]);
+        assert!((b - a).cross(c - a).dot(a + b + c) < 0.0, "{a} {b} {c}");
+        assert!(normals.iter().zip([a, b, c]).all(|(&i, p)| data.normals[i as usize].dot(p) < -0.99));
+    }
+}
+
+#[test]
+fn opaque_spheres_that_are_inside_out_show_their_inside() {
+    let flip = "<boolean name='flip_normals' value='true'/>"; // prose: keep
+    let mirror = "<transform name='to_world'><scale x='-1'/></transform>";
+    for more in [flip, mirror] {
+        assert_faces_inwards(&clean(&format!("<shape type='sphere'><bsdf type='diffuse'/>{more}</shape>")));
+    }
+    // Both together are an ordinary sphere.
+    let scene = clean(&format!("<shape type='sphere'><bsdf type='diffuse'/>{flip}{mirror}</shape>"));
+    assert!(scene.assets.meshes.is_empty());
+}
+
+/// Mesh of two faces with a fold between them, in which only one vertex has a colour.
+const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
+    element face 2\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 0 0 .5 .2 .8\n1 0 0 1 0 1 1 1\n1 1 0 1 1 1 1 1\n0 1 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n";
+
+#[test]
+fn mesh_files_are_smooth_and_uncoloured_by_default() {
+    let of = |more: &str| {
+        let inner = format!("<shape type='ply'><string name='filename' value='folded.ply'/>{more}</shape>");
+        mesh(&clean_in(&[("folded.ply", FOLDED.as_bytes())], &inner)).clone()
+    };
+    let plain = of("");
+    assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
+    // At the fold, the normal is the mean of the normals of both faces, weighted by their angles of
+    // 45 and 60 degrees.
+    let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
+    let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
+    let angles = [45f32.to_radians(), 60f32.to_radians()];
+    let wanted = (angles[0] * face + angles[1] * other).normalize();
+    let found = plain.normals[plain.triangle_normals[0][a] as usize];
+    assert!((found - wanted).length() < 1e-5, "{found} and not {wanted}");
+    assert!(of("<boolean name='face_normals' value='true'/>").flat);
+    let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
+        <string name='name' value='vertex_color'/></texture></bsdf>");
+    let dimmed = "<shape type='ply'><string name='filename' value='folded.ply'/><bsdf type='diffuse'>\
+        <texture name='reflectance' type='mesh_attribute'><string name='name' value='vertex_color'/>\
+        <float name='scale' value='.5'/></texture></bsdf></shape>";
+    let scene = clean_in(&[("folded.ply", FOLDED.as_bytes())], dimmed);
+    let Material::Principled(dimmed) = material(&scene) else { panic!() };
+    assert_eq!(dimmed.base_color, Vec3::splat(0.5));
+    // Vertex colours of PLY files are linear.
+    let wanted = [0.5, 0.2, 0.8];
+    let found = colored.colors[0];
+    assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 4e-3) && found[3] == 1.0, "{found:?}");
+}
+
+#[test]
+fn normal_map_tangents_follow_u() {
+    let leaning = "<bsdf type='normalmap'><texture name='normalmap' type='bitmap'><boolean name='raw' value='true'/>\
+        <string name='filename' value='n.ppm'/></texture><bsdf type='diffuse'/></bsdf>";
+    let files: [(&str, &[u8]); 2] = [("n.ppm", b"P6\n1 1\n255\n\x80\x80\xff"), ("folded.ply", FOLDED.as_bytes())];
+    for shape in [
+        "<shape type='rectangle'>",
+        "<shape type='ply'><string name='filename' value='folded.ply'/>",
+        "<shape type='cylinder'>",
+    ] {
+        let scene = clean_in(&files, &format!("{shape}{leaning}</shape>"));
+        let data = mesh(&scene);
+        assert_eq!(data.tangents.len(), data.positions.len(), "{shape}");
+        for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
+            for k in 0..3 {
+                // The tangent points in the direction of increasing u.
+                let tangent = data.tangents[corners[k] as usize];
+                let [x, y, z, side] = tangent;
+                let along = (0..3).filter(|&l| l != k).map(|l| {
+                    let way = data.positions[corners[l] as usize] - data.positions[corners[k] as usize];
+                    (way.dot(Vec3::new(x, y, z)), data.uvs[uvs[l] as usize].x - data.uvs[uvs[k] as usize].x)
+                });
+                for (way, u) in along.filter(|(way, u)| way.abs() > 0.1 && u.abs() > 0.1) {
+                    assert!(way * u > 0.0, "{shape}: {tangent:?}");
+                }
+                assert_eq!(side, 1.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn cylinder_axes_match_mitsuba() {
+    // Point at which u is 0 on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
+    for (to, start) in [
+        ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
+        ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ([0.5, 1.0, -2.0], [0.97462, -0.05180, 0.21776]),
+        ([-1.0, 0.2, 0.3], [0.30987, 0.13836, 0.94066]),
+    ] {
+        let [x, y, z] = to;
+        let scene = clean(&format!(
+            "<shape type='cylinder'><point name='p0' x='0' y='0' z='0'/><point name='p1' x='{x}' y='{y}' z='{z}'/></shape>"
+        ));
+        let (data, mut map) = (mesh(&scene), glam::DAffine3::IDENTITY);
+        let mut object = &scene.root.as_ref().unwrap().objects[0];
+        while let ObjectKind::Transform(ops, inner) = &object.node {
+            (map, object) = (map * MatrixOp::product(ops, MatrixRules::default()), inner);
+        }
+        let number = data.uvs.iter().position(|uv| uv.x == 0.0).unwrap();
+        let corner = data.triangle_uvs.iter().zip(&data.triangles).find_map(|(uvs, corners)| {
+            uvs.iter().position(|&uv| uv == number as u32).map(|k| data.positions[corners[k] as usize])
+        });
+        let found = map.transform_vector3(corner.unwrap().with_z(0.0).as_dvec3()).as_vec3();
+        assert!((found - Vec3::from_array(start)).length() < 2e-3, "{to:?}: {found} and not {start:?}");
+    }
+}
+
+#[test]
+fn curve_files_with_hair_become_tubes() {
+    let folder = folder(&[
+        ("hair.txt", b"0 0 0 0.1\n1 0 0 0.1\n2 0 0 0.1\n3 0 0 0.1\n\n0 1 0 0.2\n1 1 0 0.2\n2 1 0 0.2\n3 1 0 0.2\n"),
+        ("short.txt", b"0 0 0 0.1\n1 0 0 0.1\n"),
+        ("bad.txt", b"0 0 0 0.1\n1 0 0\n"),
+        ("thin.txt", b"0 0 0 0.1\n1 0 0 -1\n"),
+    ]);
+    let text = |kind: &str, file: &str| {
+        format!(
+            "<scene version='3.0.0'><shape type='{kind}'><string name='filename' value='{file}'/>\
+             <bsdf type='hair'><float name='eumelanin' value='0.5'/><float name='scale_tilt' value='3'/>\
+             <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
+        )
+    };
+    // Splines have flat ends, and linear curves end in hemispheres.
+    for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
+        let (scene, messages) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
+        assert_eq!(messages, [""; 0]);
+        let scene = scene.unwrap();
+        let Material::Hair(hair) = material(&scene) else { panic!("{kind}") };
+        let wanted =
+            HairMaterial { eumelanin: 0.5, pheomelanin: 0.2, scale_tilt: 3.0, ior: 1.6, ..HairMaterial::default() };
+        assert_eq!(*hair, wanted);
+        let data = scene.assets.meshes.values().next().unwrap();
+        let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
+        // Each of the two tubes has the width that its radius gives, and u increases along them.
+        let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
+        assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
+        let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);
+        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
+    }
+    for (file, kind, wanted) in [
+        (
+            "short.txt",
+            "bsplinecurve",
+            "short.txt:3:1 error the curve that ends here has 2 points, but needs at least 4 points",
+        ),
+        (
+            "bad.txt",
+            "linearcurve",
+            "bad.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more",
+        ),
+        (
+            "thin.txt",
+            "linearcurve",
+            "thin.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more",
+        ),
+        ("none.txt", "linearcurve", "error the curves cannot be read"),
+    ] {
+        let (scene, messages) = read_in(folder.path(), "scene.xml", text(kind, file));
+        assert!(scene.is_none() && messages.iter().any(|message| message.contains(wanted)), "{messages:#?}");
+    }
+}
 
 #[test]
 fn serialized_mesh_equals_ply_mesh() {
