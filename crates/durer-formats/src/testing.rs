@@ -76,17 +76,19 @@ pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
     folder
 }
 
-/// Reads a text, writes the scene in the format of its name, and reads that again. Returns both
-/// scenes and the messages of the writer.
-pub(super) fn written_again(folder: &Path, name: &str, text: &str) -> (Scene, Scene, Vec<String>) {
-    let (before, messages) = read_in(folder, name, text);
+/// Reads a text, writes the scene in the format of its name, which must not lose anything, and
+/// reads that again. Returns both scenes.
+pub(super) fn written_again(name: &str, text: &str) -> [Scene; 2] {
+    let folder = folder(&[]);
+    let (before, messages) = read_in(folder.path(), name, text);
     let before = before.unwrap_or_else(|| panic!("{messages:?}"));
     let after_name = format!("again.{}", name.rsplit('.').next().unwrap());
-    let messages = write_in(folder, &after_name, &before);
-    let (after, read) = read_in(folder, &after_name, std::fs::read(folder.join(&after_name)).unwrap());
+    let messages = write_in(folder.path(), &after_name, &before);
+    assert_eq!(messages, [""; 0], "{text}");
+    let (after, read) = read_in(folder.path(), &after_name, std::fs::read(folder.path().join(&after_name)).unwrap());
     let after = after.unwrap_or_else(|| panic!("{read:?}"));
     assert!(!read.iter().any(|line| line.contains("warning")), "{read:?}");
-    (before, after, messages)
+    [before, after]
 }
 
 /// Writes a scene and the files beside it in a folder. Returns the messages of the writer.

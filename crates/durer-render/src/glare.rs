@@ -26,6 +26,13 @@ pub struct Observer {
     pub up: Vec3,
 }
 
+impl Observer {
+    /// Returns the ray from the eye in a direction.
+    fn ray(&self, direction: Vec3) -> Ray64 {
+        Ray64::new(self.eye.as_dvec3(), direction, 0.0, f32::INFINITY)
+    }
+}
+
 /// Options of [`glare`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlareOptions {
@@ -92,7 +99,7 @@ fn sources(world: &World, observer: &Observer, lumens: Color) -> Vec<GlareSource
         let cos = 1.0 - (f64::from(number) + 0.5) / f64::from(RAYS);
         let turn = (f64::from(number) / GOLDEN_RATIO).fract();
         let dir = frame.to_world(warp::polar(cos as f32, turn as f32));
-        let at = world.intersect(Ray64::new(observer.eye.as_dvec3(), dir, 0.0, f32::INFINITY), &mut ())?;
+        let at = world.intersect(observer.ray(dir), &mut ())?;
         let luminance = f64::from(world.emission(&at).dot(lumens));
         let position_index = position_index(observer, dir);
         (luminance > 0.0).then_some(Sighting { object: at.hit.object, luminance, position_index })
@@ -121,7 +128,7 @@ fn background(path: &Path, observer: &Observer, options: &GlareOptions) -> (f64,
     let sample = |number: u32| {
         let id = SampleId::new(options.seed, (0, 0), number);
         let dir = frame.to_world(warp::cosine_hemisphere(id.pair(0)));
-        let ray = Ray64::new(observer.eye.as_dvec3(), dir, 0.0, f32::INFINITY);
+        let ray = observer.ray(dir);
         let is_source = |at| path.world.emission(&at) != Color::ZERO;
         if path.world.intersect(ray, &mut ()).is_some_and(is_source) {
             return 0.0;

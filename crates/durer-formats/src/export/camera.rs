@@ -99,7 +99,10 @@ impl Export<'_> {
             Camera::Orthographic(flat) => {
                 (view.half, view.is_orthographic) = (0.5 * f64::from(flat.size), true);
                 mirror(&mut view, flat.handedness);
-                (view.near, view.far) = (flat.near.unwrap_or(0.0), flat.far);
+                // The other programs see nothing behind the camera, so it stands at the near plane.
+                let near = flat.near.unwrap_or(0.0);
+                view.center += f64::from(near) * forward;
+                view.far = flat.far.map(|far| far - near);
                 if flat.near != Some(0.0) {
                     self.warn_lost(format!(
                         "orthographic cameras of {program} see nothing behind their centre: move the camera back if \

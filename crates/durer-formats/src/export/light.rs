@@ -2,22 +2,20 @@
 
 use super::Export;
 use super::picture::as_pfm;
+use crate::medium::Medium;
 use crate::panorama;
 use durer_image::{self as image, Encoded};
 use durer_scene::describe::FileName;
 use durer_scene::light::{Fade, Illuminate as _, Light};
-use durer_scene::math::{Color, Vec3, fp};
-use durer_scene::scene::{Background, PictureBytes};
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Background;
 use durer_scene::spectrum::{Curve, illuminants};
 use durer_scene::texture::Environment;
-use durer_scene::texture::sky::environment_map;
+use durer_scene::texture::sky::SKY_WIDTH;
 use std::f32::consts::PI;
 
-/// Width of the picture of a sky, as in Dürer.
-const SKY_WIDTH: u32 = 512;
-
 /// Light without extent.
-pub(crate) enum Lamp {
+pub(crate) enum PunctualLight {
     /// Point light with a radiant intensity.
     Point { position: Vec3, intensity: Color },
     /// Light in a cone; the angles in degrees from the axis are those of the edge and of the
@@ -43,20 +41,15 @@ pub(crate) enum Around {
 impl Export<'_> {
     /// Returns the lights of the scene, including its sun. `program` is the name of the other
     /// program, for messages.
-    pub fn lamps(&mut self, program: &str) -> Vec<Lamp> {
+    pub fn punctual_lights(&mut self, program: &str) -> Vec<PunctualLight> {
         let lights = self.scene.lights.iter().flatten();
-        let mut lamps: Vec<Lamp> = lights.filter_map(|light| self.lamp(&light.value, program)).collect();
-        let background = &self.scene.background;
-        if let (Some(sky), Some(to_sun)) = (background.clear_sky(), background.sun()) {
+        let mut lights: Vec<PunctualLight> =
+            lights.filter_map(|light| self.punctual_light(&light.value, program)).collect();
+        if let Some((direction, irradiance)) = self.scene.background.sunlight() {
             self.warn_extent(program);
-            let (turn, scale) = background.environment_transform();
-            let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
-            let [sin, cos] = [sin, cos].map(|x| x as f32);
-            let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
-            let irradiance = scale * sky.sun();
-            lamps.push(Lamp::Distant { direction: -way.normalize_or(Vec3::Y), irradiance });
+            lights.push(PunctualLight::Distant { direction: direction.normalize_or(Vec3::NEG_Y), irradiance });
         }
-        lamps
+        lights
     }
 
     /// Returns the spectrum of a light at luminance 1: an illuminant or a file.
@@ -68,7 +61,7 @@ impl Export<'_> {
         self.warn_lost(format!("distant lights of {program} have no angular size: shadows are sharp"));
     }
 
-    fn lamp(&mut self, light: &Light, program: &str) -> Option<Lamp> {
+    fn punctual_light(&mut self, light: &Light, program: &str) -> Option<PunctualLight> {
         let mut light = light.with_unit_color();
         if let Some(name) = light.spectrum().cloned() {
             match self.light_spectrum(&name) {
@@ -91,16 +84,16 @@ impl Export<'_> {
                     let d = (point.position - self.center()).length().max(1e-3);
                     point.color * (d * d / (a.x + a.y * d + a.z * d * d).max(1e-6))
                 };
-                Some(Lamp::Point { position: point.position, intensity: PI * intensity })
+                Some(PunctualLight::Point { position: point.position, intensity: PI * intensity })
             }
             Light::Directional(far) => {
                 if far.spread.unwrap_or(0.0) > 0.0 {
                     self.warn_extent(program);
                 }
                 let direction = far.direction.normalize_or(Vec3::NEG_Y);
-                Some(Lamp::Distant { direction, irradiance: PI * far.color })
+                Some(PunctualLight::Distant { direction, irradiance: PI * far.color })
             }
-            Light::Spot(spot) => Some(Lamp::Spot {
+            Light::Spot(spot) => Some(PunctualLight::Spot {
                 position: spot.position,
                 direction: spot.direction.normalize_or(Vec3::NEG_Y),
                 intensity: PI * spot.color,
@@ -124,6 +117,18 @@ impl Export<'_> {
         if min.x <= max.x { 0.5 * (min + max) } else { Vec3::ZERO }
     }
 
+    /// Returns the medium around the camera: fog without bounds.
+    pub fn fog(&mut self, program: &str) -> Option<Medium> {
+        let fog = &self.scene.fog.as_ref()?.value;
+        if fog.density.is_some() || fog.min.is_some() || fog.max.is_some() {
+            self.warn_lost(format!("fog in a box is not written to {program}: it is left out"));
+            return None;
+        }
+        let scattering = fog.extinction * fog.color;
+        let absorption = Vec3::splat(fog.extinction) - scattering;
+        Some(Medium { absorption, scattering, anisotropy: fog.anisotropy, density: None })
+    }
+
     /// Returns the light from all around, or `None` if there is none.
     pub fn around(&mut self, program: &str) -> Option<Around> {
         let background = &self.scene.background;
@@ -137,27 +142,19 @@ impl Export<'_> {
         if background.is_night() {
             return None;
         }
-        let texels = match (background.cie_sky(), background.clear_sky()) {
-            (Some(sky), _) => environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
-            (None, Some(sky)) => environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
-            (None, None) => {
-                // With path tracing, a scene of Dürer's own that says nothing is black.
-                let is_silent = self.scene.up.is_none()
-                    && *background == Background::default()
-                    && !self.scene.background_span.has_position();
-                return (!is_silent && background.color != Vec3::ZERO).then_some(Around::Even(background.color));
-            }
+        let Some(texels) = background.sky_texels() else {
+            // With path tracing, a scene of Dürer's own that sets no background is black.
+            let is_silent = self.scene.up.is_none()
+                && *background == Background::default()
+                && !self.scene.background_span.has_position();
+            return (!is_silent && background.color != Vec3::ZERO).then_some(Around::Even(background.color));
         };
         let environment = Environment::new(SKY_WIDTH, SKY_WIDTH / 2, texels, degrees, scale)?;
         Some(Around::Map { environment, rows: SKY_WIDTH / 2, file: None })
     }
 
     fn pictured(&mut self, name: &FileName, degrees: f32, scale: Vec3) -> Option<Around> {
-        let bytes = match self.scene.assets.pictures.get(&name.path).map(|picture| &picture.bytes) {
-            Some(PictureBytes::Memory(_, bytes)) => Some(bytes.clone()),
-            _ => self.context.source.read(&name.path).ok(),
-        };
-        let picture = bytes.and_then(|bytes| {
+        let picture = self.picture_bytes(&self.picture(name).bytes).and_then(|bytes| {
             let encoded = Encoded::open(&bytes, &name.path).ok()?;
             encoded.read_for(Environment::BUILD_BYTES_PER_TEXEL, self.context.memory, image::decode_srgb).ok()
         });

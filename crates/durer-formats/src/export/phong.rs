@@ -69,7 +69,7 @@ impl Export<'_> {
             rest += most;
             surface = Surface::mix(part, surface, most / rest, None);
         }
-        // What the parts do not reflect is absorbed.
+        // The shares of a mix sum to 1.
         if whole > 1.0 + 1e-4 {
             self.warn_lost(format!("mixes of {program} cannot be as bright as this sum of colours: they are darker"));
         }

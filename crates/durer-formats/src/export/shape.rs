@@ -1,6 +1,7 @@
 //! Objects of a scene as a list of shapes, each with its transform to the world.
 
 use super::Export;
+use crate::ply::write_all_attributes;
 use durer_scene::describe::DescribedKind;
 use durer_scene::dialect::Dialect;
 use durer_scene::math::{Vec2, Vec3};
@@ -192,6 +193,29 @@ impl<'a> Export<'a> {
         }
         shaded.colors.clear();
         Some(shaded)
+    }
+
+    /// Returns the triangles of a shape and their transform to the world. The transform is in the
+    /// triangles if it would turn the shape into its mirror image. If `needs_uv` is true, warns
+    /// about missing texture coordinates.
+    pub fn mesh(&mut self, shape: &Placed, needs_uv: bool, program: &str) -> Option<(DAffine3, MeshData)> {
+        let data = self.triangles(shape, program)?;
+        if needs_uv && data.triangle_uvs.is_empty() {
+            self.warn_lost("some shapes with pictures have no texture coordinates: the pictures are not mapped");
+        }
+        Some(match shape.is_mirrored() {
+            true => (DAffine3::IDENTITY, transformed(data, &shape.to_world)),
+            false => (shape.to_world, data),
+        })
+    }
+
+    /// Returns the path of the PLY file with the triangles of a shape, as [`Export::mesh`] returns
+    /// them.
+    pub fn mesh_file(&mut self, shape: &Placed, data: impl FnOnce() -> MeshData) -> Option<String> {
+        let key = if shape.is_mirrored() { format!("{} {}", shape.key(), shape.to_world) } else { shape.key() };
+        self.file(format!("mesh {key}"), &shape.name(), "ply", |_| {
+            Some(write_all_attributes(&MeshData { flat: false, ..data() }))
+        })
     }
 
     /// Returns a distance from the origin that nothing bounded exceeds, and the camera neither.

@@ -169,6 +169,11 @@ impl Look {
     }
 }
 
+/// Returns the name of a material in the file, by its number.
+pub(crate) fn material_name(material: Option<u32>) -> String {
+    material.map_or("material-none".into(), |number| format!("material-{number}"))
+}
+
 impl Export<'_> {
     /// Returns the look of a material by its number. `program` is the name of the other program,
     /// for messages.

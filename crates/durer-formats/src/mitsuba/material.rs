@@ -119,24 +119,22 @@ impl Reader<'_> {
             "bumpmap" => return self.bump_map(plugin, depth),
             "normalmap" => return self.normal_map(plugin, depth),
             "blendbsdf" => {
-                let (share, picture) =
-                    self.number_or_texture(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
                 let parts = self.child_plugins(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
                     self.report.error(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
                     return Rc::new(MaterialDef::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
-                // A blend with nothing is an opacity.
-                return match (&*a, &*b) {
-                    (_, MaterialDef::Null) => Rc::new(a.with_opacity(share, picture)),
-                    (MaterialDef::Null, _) => {
-                        let weight = |weight: f32| weight.clamp(0.0, 1.0);
-                        let (share, picture) = self.number_or_texture(plugin, "weight", 0.5, weight);
-                        Rc::new(b.with_opacity(share, picture))
-                    }
-                    _ => Rc::new(MaterialDef::Mix(a, b, share, picture)),
-                };
+                // A blend with nothing is an opacity, which is the share of the other material.
+                let is_of_second = matches!(*a, MaterialDef::Null);
+                let share = |weight: f32| if is_of_second { weight } else { 1.0 - weight };
+                let (share, picture) =
+                    self.number_or_texture(plugin, "weight", 0.5, |weight| share(weight.clamp(0.0, 1.0)));
+                return Rc::new(match (&*a, &*b) {
+                    (MaterialDef::Null, _) => b.with_opacity(share, picture),
+                    (_, MaterialDef::Null) => a.with_opacity(share, picture),
+                    _ => MaterialDef::Mix(a, b, share, picture),
+                });
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");

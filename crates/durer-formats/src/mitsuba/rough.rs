@@ -43,9 +43,9 @@ impl Boundary {
         color * (1.0 - self.inside) / (1.0 - color * self.inside)
     }
 
-    /// Returns the colour in Mitsuba of a base that looks like a base of the colour `base` below
-    /// the same boundary in Dürer. If `fades` is true, each reflection between the base and the
-    /// boundary tints the light again, in both programs.
+    /// Returns the colour in Mitsuba for which the base looks as a base of the colour `base` does
+    /// in Dürer. If `fades` is true, the base tints the light at each reflection below the
+    /// boundary, in both programs.
     pub fn color(&self, base: f32, fades: bool) -> f32 {
         if !fades {
             return base / self.below();

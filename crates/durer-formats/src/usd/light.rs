@@ -161,10 +161,9 @@ impl Reader<'_, '_> {
         if std::mem::replace(&mut self.has_dome, true) {
             return files.report.unsupported_once(at, "only the first dome light is used");
         }
+        self.scene.background_span = at;
         let background = &mut self.scene.background;
         background.color = Vec3::ZERO;
-        self.scene.background_span = prim.span();
-        let background = &mut self.scene.background;
         let opinion = prim.get(self.stage, "inputs:texture:file").or_else(|| prim.get(self.stage, "texture:file"));
         let named = opinion.and_then(|opinion| {
             let name = joined(&opinion.layer, opinion.value.text().filter(|name| !name.is_empty())?);

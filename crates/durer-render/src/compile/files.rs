@@ -16,7 +16,8 @@ use durer_scene::scene::{Assets, Background, PictureBytes};
 use durer_scene::shape::{HeightField, Mesh, MeshData};
 use durer_scene::source::{Digest, SourceError};
 use durer_scene::spectrum::{Curve, illuminants};
-use durer_scene::texture::{CubeMap, Environment, Texture, sky};
+use durer_scene::texture::sky::SKY_WIDTH;
+use durer_scene::texture::{CubeMap, Environment, Texture};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -28,9 +29,6 @@ const BVH_BYTES_PER_TRIANGLE: u64 = 200;
 /// computed. This is the size of two triangles with three corner normals each, plus a copy of these
 /// in vertex order.
 const HEIGHT_BYTES: u64 = 112;
-
-/// Width of a computed sky picture, in pixels.
-const SKY_WIDTH: u32 = 512;
 
 /// Key of a decoded picture: its name and encoding.
 pub(super) type PictureKey = (String, Encoding);
@@ -328,13 +326,7 @@ impl<'r> Loader<'r> {
             if written.is_night() {
                 return None;
             }
-            let picture = match written.cie_sky() {
-                Some(sky) => sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
-                None => {
-                    let clear = written.clear_sky()?;
-                    sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
-                }
-            };
+            let picture = written.sky_texels()?;
             let (turn, scale) = written.environment_transform();
             return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, picture, turn, scale);
         };

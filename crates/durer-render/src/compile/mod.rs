@@ -381,16 +381,11 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
 
 /// Returns a directional light for the sun of a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
-    // The CIE standard skies depend on the sun's position but have no direct sunlight.
-    let (sky, to_sun) = background.clear_sky().zip(background.sun())?;
-    let (turn, scale) = background.environment_transform();
-    let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
-    let [sin, cos] = [sin, cos].map(|x| x as f32);
-    let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
+    let (direction, illuminance) = background.sunlight()?;
     // The colour of a light is the radiance of a white matte surface that it illuminates, which is
     // illuminance divided by pi.
-    let color = scale * sky.sun() / std::f32::consts::PI;
-    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
+    let color = illuminance / std::f32::consts::PI;
+    Some(DirectionalLight { direction, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
 /// Visitor that flattens the nested groups and transforms of a scene into a list of objects.

@@ -15,11 +15,12 @@ use crate::describe::{Constraint, FileName, described, described_words};
 use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
-use crate::math::Vec3;
+use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::shape::{HeightField, MeshData, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
+use crate::texture::sky::{SKY_WIDTH, environment_map};
 use crate::texture::{CieSky, Sky, SkyModel};
 pub use assets::{Assets, NamedTexture, PictureBytes, TextureImage};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
@@ -180,6 +181,27 @@ impl Background {
     pub fn clear_sky(&self) -> Option<Sky> {
         let sun = self.sun().filter(|_| self.cie_sky.is_none() && !self.is_night())?;
         Some(Sky::new(self.sky_model.unwrap_or_default(), sun, self.turbidity(), self.ground_reflectance))
+    }
+
+    /// Returns the direction in which the sunlight of a clear sky travels, not normalised, and its
+    /// illuminance in lux, per colour channel, on a surface that faces the sun.
+    pub fn sunlight(&self) -> Option<(Vec3, Color)> {
+        // The CIE standard skies depend on the sun's position but have no direct sunlight.
+        let (sky, to_sun) = self.clear_sky().zip(self.sun())?;
+        let (turn, scale) = self.environment_transform();
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
+        let [sin, cos] = [sin, cos].map(|x| x as f32);
+        let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
+        Some((-way, scale * sky.sun()))
+    }
+
+    /// Returns the texels of an environment map of the sky, [`SKY_WIDTH`] wide and half as high, or
+    /// `None` if the background has no sky by a model.
+    pub fn sky_texels(&self) -> Option<Vec<Color>> {
+        match self.cie_sky() {
+            Some(sky) => Some(environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir))),
+            None => self.clear_sky().map(|sky| environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir))),
+        }
     }
 
     /// Returns the rotation of the environment about the y axis in degrees, and the scale of the

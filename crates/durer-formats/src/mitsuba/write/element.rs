@@ -56,6 +56,11 @@ impl Element {
         self.property("string", name, value)
     }
 
+    /// Adds a named property with coordinates; `element` is `point` or `vector`.
+    pub fn vector(self, element: &'static str, name: &'static str, [x, y, z]: [impl Display; 3]) -> Self {
+        self.and(Element::new(element).with("name", name).with("x", x).with("y", y).with("z", z))
+    }
+
     pub fn boolean(self, name: &'static str, value: bool) -> Self {
         self.property("boolean", name, value)
     }

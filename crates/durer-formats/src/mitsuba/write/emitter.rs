@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::{PROGRAM, Writer};
-use crate::export::light::{Around, Lamp};
+use crate::export::light::{Around, PunctualLight};
 use crate::extension;
 use crate::mitsuba::light::FINE_ROWS;
 use crate::mitsuba::transform::frame;
@@ -12,27 +12,25 @@ use glam::DAffine3;
 
 impl Writer<'_> {
     pub(super) fn emitters(&mut self) -> Vec<Element> {
-        let lamps = self.export.lamps(PROGRAM);
-        let mut emitters: Vec<Element> = lamps.into_iter().map(|lamp| self.lamp(lamp)).collect();
+        let lights = self.export.punctual_lights(PROGRAM);
+        let mut emitters: Vec<Element> = lights.into_iter().map(|light| self.punctual_light(light)).collect();
         if let Some(around) = self.export.around(PROGRAM) {
             emitters.extend(self.around(around));
         }
         emitters
     }
 
-    fn lamp(&mut self, lamp: Lamp) -> Element {
-        match lamp {
-            Lamp::Point { position, intensity } => {
-                let place = Element::new("point").with("name", "position").with("x", position.x);
-                let place = place.with("y", position.y).with("z", position.z);
-                Element::plugin("emitter", "point").and(place).rgb("intensity", intensity)
+    fn punctual_light(&mut self, light: PunctualLight) -> Element {
+        match light {
+            PunctualLight::Point { position, intensity } => {
+                let light = Element::plugin("emitter", "point").vector("point", "position", position.to_array());
+                light.rgb("intensity", intensity)
             }
-            Lamp::Distant { direction, irradiance } => {
-                let way = Element::new("vector").with("name", "direction").with("x", direction.x);
-                let way = way.with("y", direction.y).with("z", direction.z);
-                Element::plugin("emitter", "directional").and(way).rgb("irradiance", irradiance)
+            PunctualLight::Distant { direction, irradiance } => {
+                let light = Element::plugin("emitter", "directional");
+                light.vector("vector", "direction", direction.to_array()).rgb("irradiance", irradiance)
             }
-            Lamp::Spot { position, direction, intensity, angle, inner_angle, fade } => {
+            PunctualLight::Spot { position, direction, intensity, angle, inner_angle, fade } => {
                 if inner_angle < angle {
                     self.export.warn_lost(
                         "spot lights of Mitsuba fade linearly with the angle: the width of the beam is fitted",

@@ -35,11 +35,7 @@ impl Writer<'_> {
         if view.is_orthographic {
             // The view is 2 units of camera space wide.
             let half = view.half * w / larger;
-            let back = DAffine3::from_translation(f64::from(view.near) * forward);
-            if let Some(far) = view.far {
-                sensor = sensor.float("far_clip", far - view.near);
-            }
-            sensor = sensor.transform("to_world", &(back * frame * DAffine3::from_scale(DVec3::new(half, half, 1.0))));
+            sensor = sensor.transform("to_world", &(frame * DAffine3::from_scale(DVec3::new(half, half, 1.0))));
         } else {
             sensor = sensor.float("fov", view.angle()).text("fov_axis", "larger");
             // The offset is a fraction of the film's width and height, to the right and down.
@@ -56,10 +52,10 @@ impl Writer<'_> {
             if view.near > 0.0 {
                 sensor = sensor.float("near_clip", view.near);
             }
-            if let Some(far) = view.far {
-                sensor = sensor.float("far_clip", far);
-            }
             sensor = sensor.transform("to_world", &frame);
+        }
+        if let Some(far) = view.far {
+            sensor = sensor.float("far_clip", far);
         }
         let mut film = Element::plugin("film", "hdrfilm").integer("width", width).integer("height", height);
         if let Some((left, top, columns, rows)) = self.export.scene.render_defaults.crop {
@@ -67,20 +63,8 @@ impl Writer<'_> {
             film = film.integer("crop_width", columns).integer("crop_height", rows);
         }
         let sampler = Element::plugin("sampler", "independent").integer("sample_count", self.export.samples());
-        Some(sensor.and(film).and(sampler).and_all(self.fog()))
-    }
-
-    /// Returns the medium around the camera.
-    fn fog(&mut self) -> Option<Element> {
-        let fog = &self.export.scene.fog.as_ref()?.value;
-        if fog.density.is_some() || fog.min.is_some() || fog.max.is_some() {
-            self.export.warn_lost("fog in a box is not written to Mitsuba: it is left out");
-            return None;
-        }
-        let scattering = fog.extinction * fog.color;
-        let absorption = Vec3::splat(fog.extinction) - scattering;
-        let medium = Medium { absorption, scattering, anisotropy: fog.anisotropy, density: None };
-        Some(self.medium("medium", &medium))
+        let fog = self.export.fog(PROGRAM).map(|fog| self.medium("medium", &fog));
+        Some(sensor.and(film).and(sampler).and_all(fog))
     }
 
     /// Returns the element of a homogeneous medium.

@@ -2,10 +2,10 @@
 
 use super::element::Element;
 use super::{PROGRAM, Writer};
-use crate::export::shape::{Geometry, Placed, transformed};
-use crate::export::surface::{Emission, Look};
+use crate::export::shape::{Geometry, Placed};
+use crate::export::surface::{Emission, Look, material_name};
+use crate::mitsuba::tessellate::with_flipped_v;
 use crate::mitsuba::transform::frame;
-use crate::ply::write_all_attributes;
 use durer_scene::shape::Primitive;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -54,7 +54,7 @@ impl Writer<'_> {
         let look = material.map_or_else(Look::plain, |number| self.export.look(number, PROGRAM));
         self.looks.insert(material, look.clone());
         if !look.is_interface() {
-            let bsdf = self.bsdf(&look.surface).with("id", id(material));
+            let bsdf = self.bsdf(&look.surface).with("id", material_name(material));
             self.shared.push(bsdf);
         }
         look
@@ -78,7 +78,7 @@ impl Writer<'_> {
     fn dressed(&mut self, mut element: Element, material: Option<u32>, look: &Look) -> Element {
         element = match look.is_interface() {
             true => element.and(Element::plugin("bsdf", "null")),
-            false => element.and(Element::new("ref").with("id", id(material))),
+            false => element.and(Element::new("ref").with("id", material_name(material))),
         };
         if let Some(emission) = &look.emission {
             element = element.and(self.area(emission));
@@ -104,9 +104,11 @@ impl Writer<'_> {
     fn geometry(&mut self, shape: &Placed, needs_uv: bool) -> Option<Element> {
         let map = &shape.to_world;
         if let (Some((center, radius)), false) = (shape.sphere(), needs_uv) {
-            let place = Element::new("point").with("name", "center").with("x", center.x);
-            let place = place.with("y", center.y).with("z", center.z);
-            return Some(Element::plugin("shape", "sphere").float("radius", radius).and(place));
+            return Some(Element::plugin("shape", "sphere").float("radius", radius).vector(
+                "point",
+                "center",
+                center.to_array(),
+            ));
         }
         if let Some((map, radius)) = shape.turned_sphere() {
             return Some(Element::plugin("shape", "sphere").float("radius", radius).transform("to_world", &map));
@@ -126,24 +128,12 @@ impl Writer<'_> {
                 Element::plugin("shape", "cube").transform("to_world", &(*map * own * DAffine3::from_scale(side))),
             );
         }
-        let data = self.export.triangles(shape, PROGRAM)?;
-        let is_mirrored = shape.is_mirrored();
+        let (map, data) = self.export.mesh(shape, needs_uv, PROGRAM)?;
         let is_flat = data.flat;
-        if needs_uv && data.triangle_uvs.is_empty() {
-            self.export.warn_lost("some shapes with pictures have no texture coordinates: the pictures are not mapped");
-        }
-        let key = if is_mirrored { format!("{} {map}", shape.key()) } else { shape.key() };
-        let path = self.export.file(format!("mesh {key}"), &shape.name(), "ply", |_| {
-            let mut data = super::super::tessellate::with_flipped_v(data);
-            if is_mirrored {
-                data = transformed(data, map);
-            }
-            data.flat = false;
-            Some(write_all_attributes(&data))
-        })?;
+        let path = self.export.mesh_file(shape, || with_flipped_v(data))?;
         let mesh = Element::plugin("shape", "ply").text("filename", &path);
         let mesh = if is_flat { mesh.boolean("face_normals", true) } else { mesh };
-        Some(if is_mirrored { mesh } else { mesh.transform("to_world", map) })
+        Some(if shape.is_mirrored() { mesh } else { mesh.transform("to_world", &map) })
     }
 }
 
@@ -169,9 +159,4 @@ fn disk(center: DVec3, normal: DVec3, radius: f64) -> Element {
         translation: center,
     };
     Element::plugin("shape", "disk").transform("to_world", &map)
-}
-
-/// Returns the id of a material.
-fn id(material: Option<u32>) -> String {
-    material.map_or("material-none".into(), |number| format!("material-{number}"))
 }

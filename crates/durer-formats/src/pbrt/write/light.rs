@@ -2,7 +2,7 @@
 
 use super::text::Directive;
 use super::{PROGRAM, Writer};
-use crate::export::light::{Around, Lamp};
+use crate::export::light::{Around, PunctualLight};
 use crate::export::picture::as_pfm;
 use crate::pbrt::environment::equal_area_direction;
 use durer_image::Image;
@@ -17,8 +17,8 @@ const MAX_SIDE: u32 = 1024;
 
 impl Writer<'_> {
     pub(super) fn lights(&mut self) -> String {
-        let lamps = self.export.lamps(PROGRAM);
-        let mut text: String = lamps.into_iter().map(|lamp| self.lamp(lamp)).collect();
+        let lights = self.export.punctual_lights(PROGRAM);
+        let mut text: String = lights.into_iter().map(|light| self.punctual_light(light)).collect();
         let infinite = match self.export.around(PROGRAM) {
             Some(Around::Even(color)) => Some(Directive::new("LightSource", "infinite").rgb("L", color)),
             Some(Around::Map { environment, rows, .. }) => {
@@ -35,14 +35,16 @@ impl Writer<'_> {
         text
     }
 
-    fn lamp(&mut self, lamp: Lamp) -> String {
-        let light = |kind: &str| Directive::new("LightSource", kind);
-        match lamp {
-            Lamp::Point { position, intensity } => light("point").rgb("I", intensity).point("from", position).line(),
-            Lamp::Distant { direction, irradiance } => {
-                light("distant").rgb("L", irradiance).point("from", -direction).point("to", Default::default()).line()
+    fn punctual_light(&mut self, light: PunctualLight) -> String {
+        let source = |kind: &str| Directive::new("LightSource", kind);
+        match light {
+            PunctualLight::Point { position, intensity } => {
+                source("point").rgb("I", intensity).point("from", position).line()
             }
-            Lamp::Spot { position, direction, intensity, angle, inner_angle, fade } => {
+            PunctualLight::Distant { direction, irradiance } => {
+                source("distant").rgb("L", irradiance).point("from", -direction).point("to", Default::default()).line()
+            }
+            PunctualLight::Spot { position, direction, intensity, angle, inner_angle, fade } => {
                 let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
                 let [outer, inner] = [angle, inner_angle].map(cosine);
                 // Choose the inner cone so that the flux stays the same. Over the fade, the mean of
@@ -56,17 +58,12 @@ impl Writer<'_> {
                 if fade != Fade::Smooth && inner != outer {
                     self.export.warn_lost("spot lights of pbrt fade in another way: the width of the beam is fitted");
                 }
-                let inner_angle = match fade == Fade::Smooth || fitted >= 1.0 {
-                    true => {
-                        if fade == Fade::Smooth {
-                            inner_angle
-                        } else {
-                            0.0
-                        }
-                    }
-                    false => fp::atan2((1.0 - fitted * fitted).max(0.0).sqrt(), fitted).to_degrees(),
+                let inner_angle = match fade {
+                    Fade::Smooth => inner_angle,
+                    _ if fitted >= 1.0 => 0.0,
+                    _ => fp::atan2((1.0 - fitted * fitted).max(0.0).sqrt(), fitted).to_degrees(),
                 };
-                let cone = light("spot").rgb("I", intensity).point("from", position).point("to", position + direction);
+                let cone = source("spot").rgb("I", intensity).point("from", position).point("to", position + direction);
                 cone.float("coneangle", angle).float("conedeltaangle", angle - inner_angle).line()
             }
         }

@@ -3,9 +3,8 @@
 use super::text::{Directive, scoped, transform};
 use super::view::named_medium;
 use super::{PROGRAM, Writer};
-use crate::export::shape::{Placed, transformed};
-use crate::export::surface::{Look, Mask, Surface};
-use crate::ply::write_all_attributes;
+use crate::export::shape::Placed;
+use crate::export::surface::{Look, Mask, Surface, material_name};
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3};
@@ -47,7 +46,7 @@ impl Writer<'_> {
         let look = material.map_or_else(Look::plain, |number| self.export.look(number, PROGRAM));
         self.looks.insert(material, look.clone());
         if !look.is_interface() {
-            self.material(&name(material), &look.surface);
+            self.material(&material_name(material), &look.surface);
         }
         if let Some(medium) = &look.medium {
             self.named += &named_medium(&inside(material), medium);
@@ -58,7 +57,7 @@ impl Writer<'_> {
     fn shape(&mut self, shape: &Placed, look: &Look) -> String {
         let mut text = match look.is_interface() {
             true => "Material \"interface\"\n".to_string(),
-            false => format!("NamedMaterial \"{}\"\n", name(shape.material)),
+            false => format!("NamedMaterial \"{}\"\n", material_name(shape.material)),
         };
         if look.medium.is_some() {
             let fog = if self.export.scene.fog.is_some() { "fog" } else { "" };
@@ -105,21 +104,11 @@ impl Writer<'_> {
             let map = DAffine3 { matrix3: DMat3::from_cols(x, y, normal), translation: center };
             return Some((map, Directive::new("Shape", "disk").float("radius", radius)));
         }
-        let data = self.export.triangles(shape, PROGRAM)?;
-        if needs_uv && data.triangle_uvs.is_empty() {
-            self.export.warn_lost("some shapes with pictures have no texture coordinates: the pictures are not mapped");
-        }
-        let (map, data) = match shape.is_mirrored() {
-            true => (DAffine3::IDENTITY, transformed(data, &shape.to_world)),
-            false => (shape.to_world, data),
-        };
+        let (map, data) = self.export.mesh(shape, needs_uv, PROGRAM)?;
         if data.triangles.len() <= FEW && data.triangle_normals.is_empty() && data.triangle_uvs.is_empty() {
             return Some((map, listed(&data)));
         }
-        let key = if shape.is_mirrored() { format!("{} {}", shape.key(), shape.to_world) } else { shape.key() };
-        let path = self.export.file(format!("mesh {key}"), &shape.name(), "ply", |_| {
-            Some(write_all_attributes(&MeshData { flat: false, ..data }))
-        })?;
+        let path = self.export.mesh_file(shape, || data)?;
         Some((map, Directive::new("Shape", "plymesh").string("filename", &path)))
     }
 }
@@ -135,12 +124,7 @@ fn group(number: Option<usize>) -> String {
     format!("group-{}", number.unwrap_or_default())
 }
 
-/// Returns the name of a material.
-fn name(material: Option<u32>) -> String {
-    material.map_or("material-none".into(), |number| format!("material-{number}"))
-}
-
 /// Returns the name of the medium inside objects of a material.
 fn inside(material: Option<u32>) -> String {
-    format!("inside-{}", name(material))
+    format!("inside-{}", material_name(material))
 }

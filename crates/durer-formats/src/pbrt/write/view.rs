@@ -5,9 +5,7 @@ use super::{PROGRAM, Writer};
 use crate::medium::Medium;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Emitters;
-use glam::{DAffine3, DVec2};
-
-const NO_CLIPPING: &str = "cameras of pbrt have no clipping planes: everything is visible";
+use glam::DVec2;
 
 impl Writer<'_> {
     pub(super) fn view(&mut self) -> String {
@@ -31,29 +29,20 @@ impl Writer<'_> {
 
     /// Returns the medium around the camera, which is also that around all shapes.
     fn fog(&mut self) -> String {
-        let Some(fog) = self.export.scene.fog.as_ref().map(|fog| fog.value.clone()) else { return String::new() };
-        if fog.density.is_some() || fog.min.is_some() || fog.max.is_some() {
-            self.export.warn_lost("fog in a box is not written to pbrt: it is left out");
-            return String::new();
-        }
-        let scattering = fog.extinction * fog.color;
-        let absorption = Vec3::splat(fog.extinction) - scattering;
-        let medium = Medium { absorption, scattering, anisotropy: fog.anisotropy, density: None };
-        named_medium("fog", &medium) + "MediumInterface \"\" \"fog\"\n"
+        let Some(fog) = self.export.fog(PROGRAM) else { return String::new() };
+        named_medium("fog", &fog) + "MediumInterface \"\" \"fog\"\n"
     }
 
     fn camera(&mut self) -> String {
         let Some(view) = self.export.view(PROGRAM) else { return String::new() };
         let (width, height) = self.export.size();
         let sides = DVec2::new(f64::from(width), f64::from(height));
-        let [right, up, forward] = view.axes;
         // The transform maps from world space to camera space.
-        let back = DAffine3::from_translation(f64::from(if view.is_orthographic { view.near } else { 0.0 }) * forward);
-        let text = transform(&(back * view.frame([right, up, forward])).inverse());
+        let text = transform(&view.frame(view.axes).inverse());
+        if view.near > 0.0 || view.far.is_some() {
+            self.export.warn_lost("cameras of pbrt have no clipping planes: everything is visible");
+        }
         if view.is_orthographic {
-            if view.far.is_some() {
-                self.export.warn_lost(NO_CLIPPING);
-            }
             let half = view.half * sides / sides.max_element();
             return text
                 + &Directive::new("Camera", "orthographic")
@@ -72,9 +61,6 @@ impl Writer<'_> {
         }
         if view.lens_radius > 0.0 {
             camera = camera.float("lensradius", view.lens_radius).float("focaldistance", view.focus_distance);
-        }
-        if view.near > 0.0 || view.far.is_some() {
-            self.export.warn_lost(NO_CLIPPING);
         }
         text + &camera.line()
     }

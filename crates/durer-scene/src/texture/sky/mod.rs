@@ -13,6 +13,9 @@ use std::f32::consts::PI;
 /// Angular radius of the sun in degrees.
 pub const SUN_RADIUS: f32 = 0.2665;
 
+/// Width of an environment map of a sky, in texels.
+pub const SKY_WIDTH: u32 = 512;
+
 /// Fraction of its light that the ground below a sky of Hosek and Wilkie reflects by default.
 const REFLECTANCE: f32 = 0.2;
 
