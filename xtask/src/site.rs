@@ -37,7 +37,7 @@ fn book(root: &Path, folder: &Path) -> Result<()> {
     };
     let scenes = Scenes { from: root.join("scenes"), to: folder.join("scenes") };
     edit("gallery.md", &|text| gallery(text, |name| scenes.publish(name, &fs::read(scenes.from.join(name))?)))?;
-    edit("live.md", &|text| Ok(format!("{text}\n{}", frame(".."))))?;
+    edit("live.md", &|text| Ok(format!("{text}\n{}", frame("../"))))?;
     let mut examples = BTreeMap::new();
     for entry in entries() {
         let Some(scene) = entry.scene() else { continue };
@@ -60,7 +60,7 @@ fn book(root: &Path, folder: &Path) -> Result<()> {
 fn api(root: &Path, folder: &Path) -> Result<()> {
     let target = root.join("target/site");
     let links = tempfile::Builder::new().suffix(".html").tempfile()?;
-    fs::write(&links, API_LINKS)?;
+    fs::write(&links, API_LINKS.replace("FRAME", &frame("${site}")))?;
     call(
         Command::new(crate::cargo())
             .args(["doc", "--no-deps", "--lib", "--target-dir"])
@@ -72,7 +72,7 @@ fn api(root: &Path, folder: &Path) -> Result<()> {
 }
 
 /// HTML at the top of each page of the library's documentation: links to the playground and the
-/// book, and the playground itself on the first page.
+/// book, and `FRAME`, the playground itself, on the first page.
 const API_LINKS: &str = r#"<script>
 addEventListener("DOMContentLoaded", () => {
     const site = document.querySelector('meta[name="rustdoc-vars"]').dataset.rootPath + "../";
@@ -82,19 +82,16 @@ addEventListener("DOMContentLoaded", () => {
         `<nav id="durer-site"><a href="${site}#/viewer">Playground</a> · <a href="${site}book/index.html">Book</a></nav>`,
     );
     if (/\/durer\/(index\.html)?$/.test(location.pathname)) {
-        page.insertAdjacentHTML(
-            "beforeend",
-            `<iframe src="${site}" title="Playground" loading="lazy" style="width:100%;height:80vh;border:0"></iframe>`,
-        );
+        page.insertAdjacentHTML("beforeend", `FRAME`);
     }
 });
 </script>
 "#;
 
-/// Returns HTML that shows the playground in a page.
+/// Returns HTML that shows the playground at an address, which ends with a slash, in a page.
 fn frame(site: &str) -> String {
     format!(
-        "<iframe src=\"{site}/\" title=\"Playground\" loading=\"lazy\" style=\"width:100%;height:80vh;border:0\"></iframe>\n"
+        "<iframe src=\"{site}\" title=\"Playground\" loading=\"lazy\" style=\"width:100%;height:80vh;border:0\"></iframe>\n"
     )
 }
 

@@ -18,6 +18,8 @@ use durer_scene::describe::{DescribedKind, Field, Value};
 use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::sampler::Sampler;
 use durer_scene::scene::{Scene, SceneDefaults};
+#[cfg(feature = "options")]
+pub(crate) use option_form::three_numbers;
 pub(crate) use option_form::unknown_option;
 pub use option_form::{JobOption, OptionForm};
 use option_form::{OptionValue, one_of};
@@ -156,15 +158,11 @@ options! {
         /// linear light, for example 1,1,1 for white. Lighting, reflections and refractions do not
         /// change. A model without a camera then gets no ground [default: the background of the
         /// scene]
-        background: Background = "background", OptionForm::Value("transparent|R,G,B");
+        background: Backdrop = "background", OptionForm::Value("transparent|R,G,B");
         /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");
     }
 }
-
-/// Value of the option `background`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Background(pub Backdrop);
 
 /// Returns the default integrator of a scene. This is path tracing for layered materials,
 /// environments, fog and emissive surfaces, and Whitted's integrator otherwise.
@@ -372,7 +370,7 @@ impl RenderJob {
             aovs: pictures.iter().filter_map(|name| Aov::from_name(name)).collect(),
             depth_range,
             light_scale,
-            backdrop: self.background.map(|Background(backdrop)| backdrop),
+            backdrop: self.background,
         })
     }
 
@@ -467,7 +465,7 @@ impl RenderJob {
                 .filter(|&least| least != if emulates { 0.0 } else { MIN_THROUGHPUT }),
             noise_threshold: job.noise,
             adaptive: unless(job.adaptive, false),
-            background: job.backdrop.map(Background),
+            background: job.backdrop,
             seed: Some(job.seed).filter(|&seed| seed != 0),
             ..RenderJob::default()
         };

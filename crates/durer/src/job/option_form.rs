@@ -1,9 +1,8 @@
 //! Forms of option values, which define how their text is checked, parsed and printed.
 
-use super::Background;
 use durer_diag::did_you_mean;
 use durer_render::render::Backdrop;
-use durer_scene::math::Color;
+use durer_scene::math::Vec3;
 
 /// Form of the value of an option, such as a flag, a number in a range, or one of several words.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +65,13 @@ pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a
     }
 }
 
+/// Parses three finite numbers that are separated by commas.
+pub(crate) fn three_numbers(text: &str) -> Option<Vec3> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let numbers: [f32; 3] = numbers?.try_into().ok()?;
+    Some(Vec3::from(numbers)).filter(|vector| vector.is_finite())
+}
+
 /// Type of the value of an option. The value is parsed from text and printed as text.
 pub(super) trait OptionValue: Sized {
     fn parse(text: &str) -> Result<Self, String>;
@@ -115,19 +121,17 @@ impl OptionValue for (u32, u32) {
 }
 
 /// Background that the camera sees.
-impl OptionValue for Background {
+impl OptionValue for Backdrop {
     fn parse(text: &str) -> Result<Self, String> {
         if text == "transparent" {
-            return Ok(Background(Backdrop::Transparent));
+            return Ok(Backdrop::Transparent);
         }
-        let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-        let color: Option<[f32; 3]> = numbers.and_then(|numbers| numbers.try_into().ok());
-        let color = color.map(Color::from).filter(|color| color.is_finite() && color.min_element() >= 0.0);
+        let color = three_numbers(text).filter(|color| color.min_element() >= 0.0);
         let color = color.ok_or("expected `transparent`, or red, green and blue from 0, for example 1,1,1")?;
-        Ok(Background(Backdrop::Color(color)))
+        Ok(Backdrop::Color(color))
     }
     fn to_text(&self) -> String {
-        match self.0 {
+        match self {
             Backdrop::Transparent => "transparent".into(),
             Backdrop::Color(color) => format!("{},{},{}", color.x, color.y, color.z),
         }

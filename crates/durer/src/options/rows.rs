@@ -4,7 +4,7 @@
 
 use super::RenderOptions;
 use super::memory::Memory;
-use crate::job::{JobOption, OptionForm};
+use crate::job::{JobOption, OptionForm, three_numbers};
 use durer_diag::did_you_mean;
 use durer_render::compile::AccelKind;
 use durer_render::film::aov::AOVS;
@@ -320,10 +320,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 ///
 /// Returns a message for any other text.
 pub fn vector(text: &str) -> Result<Vec3, String> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-    let numbers: Option<[f32; 3]> = numbers.and_then(|numbers| numbers.try_into().ok());
-    let vector = numbers.map(Vec3::from).filter(|vector| vector.is_finite());
-    vector.ok_or_else(|| "expected three numbers, for example 0,0.8,0".into())
+    three_numbers(text).ok_or_else(|| "expected three numbers, for example 0,0.8,0".into())
 }
 
 /// Parses the numbers of grid cells along the axes, for example `10x10x10`.
