@@ -6,9 +6,10 @@ use crate::file_registry::{FileRegistry, start_of};
 use crate::options::RenderArgs;
 use crate::output::{encode, format, print_written, with_suffix};
 use crate::terminal::print_error_line;
+use crate::terminal_picture::TerminalPicture;
 use crate::{progress, report};
 use durer::format::folder::FolderSource;
-use durer::image::{Destination, Format, save_all};
+use durer::image::{Destination, Display, Format, Layer, save_all};
 use durer::options::memory::Memory;
 use durer::render::{Panicked, PartError, PartialRender, RenderEvent};
 use std::cell::Cell;
@@ -35,6 +36,7 @@ pub struct Autosave {
     restart: bool,
     quiet: bool,
     preview: Option<(Destination, &'static Format)>,
+    terminal: Option<TerminalPicture>,
     display: DisplayArgs,
     start: Instant,
     first_save_after: Duration,
@@ -91,6 +93,7 @@ impl Autosave {
             restart: work.restart,
             quiet: args.quiet,
             preview: preview.transpose()?.or(growing),
+            terminal: work.terminal.map(TerminalPicture::new).transpose()?,
             display: args.display.clone(),
             start: Instant::now(),
             first_save_after: SHORT.min(work.checkpoint_every),
@@ -128,14 +131,30 @@ impl Autosave {
             }
             self.saving.set(Some(before.elapsed()));
         }
-        if let (RenderEvent::PassDone, Some((destination, format))) = (moment, &self.preview) {
+        if moment == RenderEvent::PassDone && (self.preview.is_some() || self.terminal.is_some()) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
             let display = self.display.display(Some(&layer.image.pixels));
+            if let Some(terminal) = &self.terminal {
+                terminal.draw(&layer, display, &format!("{} %", percent(part)));
+            }
+            let Some((destination, format)) = &self.preview else { return };
             let bytes = encode(format, &[layer], display, &[]);
             if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(destination, bytes)])) {
                 self.warn_once(&error.to_string());
             }
+        }
+    }
+
+    /// Returns true if the picture is drawn in the terminal.
+    pub fn draws_in_terminal(&self) -> bool {
+        self.terminal.is_some()
+    }
+
+    /// Draws the final picture in the terminal.
+    pub fn draw_final(&self, layer: &Layer, display: Display) {
+        if let Some(terminal) = &self.terminal {
+            terminal.draw(layer, display, "");
         }
     }
 

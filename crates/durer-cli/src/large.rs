@@ -35,6 +35,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     for (given, option) in [
         (work.resume || work.restart || work.checkpoint.is_some(), "saved work"),
         (work.preview.is_some(), "--preview"),
+        (work.terminal.is_some(), "--terminal"),
         (work.time.is_some(), "--time-limit"),
         (args.denoise.is_some(), "--denoise"),
         (args.stats.is_some(), "--stats"),

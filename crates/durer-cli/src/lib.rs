@@ -38,6 +38,7 @@ mod scene_defaults;
 mod stats;
 mod svg;
 mod terminal;
+mod terminal_picture;
 mod values;
 mod verify;
 mod watching;

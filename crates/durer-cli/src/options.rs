@@ -8,6 +8,7 @@ use crate::denoise::Denoiser;
 use crate::device::DeviceChoice;
 use crate::display::DisplayArgs;
 use crate::scene_defaults::SceneDefaultsArgs;
+use crate::terminal_picture::Graphics;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::CameraPlacement;
@@ -168,6 +169,19 @@ pub struct WorkArgs {
     /// After each pass over all pixels, also write the unfinished picture to this file
     #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
     pub preview: Option<PathBuf>,
+    /// Draw the picture in the terminal and refine it after each pass. GRAPHICS is kitty, iterm,
+    /// sixel, or blocks; by default, the best that the terminal supports
+    #[arg(
+        long,
+        value_name = "GRAPHICS",
+        value_enum,
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "auto",
+        hide_possible_values = true,
+        conflicts_with_all = ["shard", "pixel"]
+    )]
+    pub terminal: Option<Graphics>,
     #[arg(long, value_name = "INDEX/COUNT", requires = "output", help = doc("shard"))]
     pub shard: Option<Shard>,
     #[arg(long, value_name = "WHAT", default_value = "tiles", hide_default_value = true, value_parser = ["tiles", "samples"], requires = "shard", help = doc("shard-by"))]

@@ -177,7 +177,9 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         diagrams::check(&job, args.view.zoom).map_err(from_render_error)?;
     }
     let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(from_render_error)?)?;
-    let stop = progress::watch(&control, args.quiet, || {
+    // A picture in the terminal has a status line of its own.
+    let hides_bar = args.quiet || autosave.draws_in_terminal();
+    let stop = progress::watch(&control, hides_bar, || {
         let mut watch = |part: &PartialRender, moment| autosave.watch(part, moment);
         device::render(gpu.as_mut(), &part, &compiled.world, &control, &mut watch)
     })
@@ -195,13 +197,16 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         None => autosave.save(&part)?,
         Some(target) => {
             let display = args.display.display_of(&part, args.quiet)?;
-            let plain = args.view.show == ["color"] && args.denoise.is_none();
+            let plain = args.view.show == ["color"] && args.denoise.is_none() && !autosave.draws_in_terminal();
             let saved = || if plain { target.save_colors(&part, display, args.quiet) } else { Ok(None) };
             let (looks, pictures) = match durer::threads::install(threads, saved)? {
                 Some(looks) => (Some(looks), Vec::new()),
                 None => {
                     let rendered = pictures(args, &compiled.world, &part, &control)?;
                     let files = durer::threads::install(threads, || target.files(&rendered, display))?;
+                    if let Some(first) = rendered.pictures.first() {
+                        autosave.draw_final(first, display);
+                    }
                     output::save(&files, args.quiet)?;
                     (check::scan(&job, &rendered.pictures, display.exposure), rendered.pictures)
                 }

@@ -19,6 +19,7 @@ use std::path::Path;
   durer render model.glb -o frame.png --turntable 36
   durer render walk.%04d.txt -o walk.png --frames 1-100
   durer render scene.txt -o picture.png --watch
+  durer render scene.txt -o picture.png --samples 256 --terminal
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
   durer render scene.txt -o picture.exr --noise-threshold 0.01 --time-limit 10m --preview preview.png
   durer render scene.txt -o picture.exr --samples 256 --resume
@@ -66,13 +67,14 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
             let work = &args.work;
             if work.checkpoint.is_some()
                 || work.preview.is_some()
+                || work.terminal.is_some()
                 || args.watch
                 || command.pixel.is_some()
                 || args.stats_file().is_some()
             {
                 return Err(invalid_input(
-                    "--checkpoint, --preview, --watch, --stats=FILE and --pixel apply to one picture, not to an \
-                     animation",
+                    "--checkpoint, --preview, --terminal, --watch, --stats=FILE and --pixel apply to one picture, \
+                     not to an animation",
                 ));
             }
             frames::run(&mut command.render, frames, moves)
