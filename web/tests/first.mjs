@@ -1,42 +1,11 @@
 /** How soon the first picture of the playground comes, and how many bytes it takes:
  * `node tests/first.mjs FOLDER [VISITS]`. Each visit starts with an empty cache. */
-import { readdirSync, readFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname, join, relative } from "node:path";
-import { gzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
+import { serve } from "./serve.mjs";
 
 const [folder, visits = "7"] = process.argv.slice(2);
-const types = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".css": "text/css",
-  ".wasm": "application/wasm",
-  ".woff2": "font/woff2",
-};
-const packed = new Map(
-  readdirSync(folder, { recursive: true, withFileTypes: true })
-    .filter((entry) => entry.isFile())
-    .map((entry) => {
-      const path = join(entry.parentPath ?? entry.path, entry.name);
-      return [`/${relative(folder, path)}`, gzipSync(readFileSync(path), { level: 9 })];
-    }),
-);
 let sent = new Map();
-const server = createServer((request, response) => {
-  const path = new URL(request.url, "http://localhost").pathname;
-  const name = path === "/" ? "/index.html" : path;
-  const bytes = packed.get(name);
-  if (!bytes) {
-    response.writeHead(404).end();
-    return;
-  }
-  sent.set(name, bytes.length);
-  response.writeHead(200, { "content-type": types[extname(name)], "content-encoding": "gzip" });
-  response.end(bytes);
-});
-await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-const address = `http://127.0.0.1:${server.address().port}/`;
+const server = await serve(folder, (name, length) => sent.set(name, length));
 
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -64,7 +33,7 @@ for (let i = 0; i < Number(visits); i++) {
     };
     requestAnimationFrame(look);
   });
-  await page.goto(address);
+  await page.goto(server.address);
   await page.waitForFunction(() => window.firstPicture);
   first.push(await page.evaluate(() => window.firstPicture));
   await page.waitForFunction(() => window.finishedPicture, undefined, { timeout: 120_000 });

@@ -31,18 +31,14 @@ for (const topic of topics) {
   });
 }
 
-/** Returns the text of a figure's equations. */
-const equations = (page) => page.locator(".equations").textContent();
 /** Waits until the equations of a figure match, and returns the captured numbers. */
 async function told(page, pattern) {
-  await page.waitForFunction(
-    (source) => new RegExp(source).test(document.querySelector(".equations").textContent),
+  const found = await page.waitForFunction(
+    (source) => new RegExp(source).exec(document.querySelector(".equations")?.textContent ?? "")?.slice(1),
     pattern.source,
   );
-  return pattern
-    .exec(await equations(page))
-    .slice(1)
-    .map((text) => Number(text.replaceAll(",", "").replace("−", "-")));
+  const texts = await found.jsonValue();
+  return texts.map((text) => Number(text.replaceAll(",", "").replace("−", "-")));
 }
 const near = (a, b, error, what) => {
   if (!(Math.abs(a - b) <= error)) throw new Error(`${what}: ${a} instead of ${b}`);
@@ -56,7 +52,7 @@ await test("numbers: homogeneous", wide, async (page) => {
   await told(page, /3\.60 \/ 2\.00 = 1\.800?\D/);
   await page.getByRole("button", { name: "Direction: w = 0" }).click();
   await page.waitForFunction(() =>
-    /It is a direction/.test(document.querySelector(".equations").textContent),
+    /It is a direction/.test(document.querySelector(".equations")?.textContent ?? ""),
   );
 });
 
@@ -87,13 +83,13 @@ await test("numbers: epsilon", wide, async (page) => {
   if (!((await wrong()) > 20)) throw new Error(`only ${await wrong()} wrong pixels without an epsilon`);
   await page.getByRole("slider", { name: "epsilon" }).fill("75");
   await page.waitForFunction(
-    () => /light leaks/.test(document.querySelector(".equations").textContent),
+    () => /light leaks/.test(document.querySelector(".equations")?.textContent ?? ""),
     null,
   );
   await shot(page, "epsilon-leaks");
   await page.getByRole("switch", { name: "Exact origins, no epsilon" }).click();
   await page.waitForFunction(
-    () => /(^|\D)0 of 76,800/.test(document.querySelector(".equations").textContent),
+    () => /(^|\D)0 of 76,800/.test(document.querySelector(".equations")?.textContent ?? ""),
     null,
   );
 });
@@ -111,7 +107,8 @@ await test("numbers: caustics", wide, async (page) => {
   await page.getByRole("slider", { name: "radius" }).fill("0.2");
   await page.waitForFunction(
     (old) =>
-      Number(/(\d+) of [\d,]+ photons/.exec(document.querySelector(".equations").textContent)?.[1]) > 2 * old,
+      Number(/(\d+) of [\d,]+ photons/.exec(document.querySelector(".equations")?.textContent ?? "")?.[1]) >
+      2 * old,
     few,
   );
 });
@@ -223,7 +220,7 @@ if (process.env.LESSON) {
     await page.waitForFunction(() => document.querySelectorAll(".account li").length > 0);
     const box = await page.locator(".picks").boundingBox();
     await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
-    await page.waitForFunction(() => /Diffuse/.test(document.querySelector(".account").textContent));
+    await page.waitForFunction(() => /Diffuse/.test(document.querySelector(".account")?.textContent ?? ""));
     await shot(page, "lesson-2");
     await page.getByRole("link", { name: "Its normals" }).click();
     await page.getByRole("heading", { name: "Its normals" }).waitFor();

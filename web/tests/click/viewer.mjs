@@ -69,7 +69,7 @@ await test("a row and the entire image, step by step", wide, async (page) => {
   await page.getByRole("button", { name: "Its row" }).click();
   await page.waitForSelector(".picture .unseen");
   await page.waitForFunction(() =>
-    /is the closest, at t = /.test(document.querySelector(".sentence").textContent),
+    /is the closest, at t = /.test(document.querySelector(".sentence")?.textContent ?? ""),
   );
   await page.waitForTimeout(2500);
   await shot(page, "steps-row");
@@ -78,7 +78,7 @@ await test("a row and the entire image, step by step", wide, async (page) => {
   await page.getByLabel("Row of the image").fill("200");
   const words = /^row 200: (\d+) rays, (\d+) hit something, (\d+) the background$/;
   await page.waitForFunction(
-    (source) => new RegExp(source).test(document.querySelector(".sentence").textContent),
+    (source) => new RegExp(source).test(document.querySelector(".sentence")?.textContent ?? ""),
     words.source,
   );
   const [, rays, hits, misses] = words.exec(await page.locator(".sentence").textContent()).map(Number);
@@ -137,14 +137,14 @@ await test("denoised, and noise and time are told", wide, async (page) => {
   await finished(page);
   await page.getByLabel("Examples").selectOption("cornell-box.txt");
   await page.getByRole("tab", { name: "Camera and render" }).click();
-  await page.waitForFunction(() => /left/.test(document.querySelector(".status").textContent));
+  await page.waitForFunction(() => /left/.test(document.querySelector(".status")?.textContent ?? ""));
   await page.getByLabel("Samples").fill("4");
   await page.getByLabel("Samples").blur();
   await finished(page);
-  await page.waitForFunction(() => /error 0\.\d+/.test(document.querySelector(".status").textContent));
+  await page.waitForFunction(() => /error 0\.\d+/.test(document.querySelector(".status")?.textContent ?? ""));
   const hash = await page.locator(".status .hash").textContent();
   await page.getByRole("switch", { name: "Denoise the finished image" }).click();
-  await page.waitForFunction(() => /denoised/.test(document.querySelector(".status").textContent));
+  await page.waitForFunction(() => /denoised/.test(document.querySelector(".status")?.textContent ?? ""));
   if ((await page.locator(".status .hash").textContent()) !== hash) throw new Error("another hash");
   await shot(page, "denoised");
 });
