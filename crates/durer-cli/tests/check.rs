@@ -292,14 +292,14 @@ fn transforms_that_move_objects_out_of_sight_are_named() {
         folder.write("a.txt", scene(object));
         folder.run("check a.txt").out
     };
-    let order = said("Transform { Scale 10 10 10 Translate 0 -1 0 Sphere { center 0 0.1 0 radius 0.1 } }");
+    let order = said("Transform { Scale 8 8 8 Translate 0 -1 0 Sphere { center 0 0.125 0 radius 0.125 } }");
     assert!(order.contains("warning[below-plane]") && order.contains("a.txt:6:1"), "{order}");
     assert!(order.contains("in the reverse order, they would move it to 0 0 0"), "{order}");
     assert!(!order.contains("check the `offset`"), "{order}");
     let twice = said("Transform { Translate 3 0 0 Sphere { center 3 0 0 radius 0.9 } }");
     assert!(twice.contains("from 3 0 0 to 6 0 0; without them, it would be in the picture"), "{twice}");
     assert!(twice.contains("a.txt:6:1") && !twice.contains("--fix"), "{twice}");
-    let sound = said("Transform { Translate 0 -1 0 Scale 10 10 10 Sphere { center 0 0.1 0 radius 0.1 } }");
+    let sound = said("Transform { Translate 0 -1 0 Scale 8 8 8 Sphere { center 0 0.125 0 radius 0.125 } }");
     assert!(sound.contains("no findings"), "{sound}");
 }
 

@@ -376,7 +376,7 @@ fn a_model_seen_from_its_hidden_back_is_explained() {
     let folder = TestFolder::new();
     let quad = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\
         \"rotation\":[0,1,0,0]},{\"camera\":0,\"translation\":[0.5,0.5,3]}],\"cameras\":[{\"type\":\"perspective\",\
-        \"perspective\":{\"yfov\":0.7,\"znear\":0.1}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\
+        \"perspective\":{\"yfov\":0.7,\"znear\":0.1}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],\"materials\":[{}],\
         \"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\
         \"max\":[1,1,0]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\
         \"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
