@@ -1,9 +1,11 @@
 //! Prints diagnostics on the terminal.
 
+mod excerpt;
+
 use crate::failure::Failure;
 use crate::terminal::{controls_terminal, print_error_line, printable, printable_line};
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
-use codespan_reporting::files::{self, SimpleFiles};
+use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use durer::diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Files, Severity, Span};
@@ -12,8 +14,8 @@ use durer::math::Vec3;
 use durer::render::Statistics;
 use durer::source::SourceError;
 use durer::world::{Material, World};
+use excerpt::Excerpt;
 use std::io::IsTerminal;
-use std::ops::Range;
 
 /// Prints either all diagnostics or only errors to standard error.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
@@ -49,8 +51,8 @@ pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnosti
     }
     for diagnostic in diagnostics {
         // Ignore errors because a closed stream cannot show a message.
-        let excerpt = Excerpt { files: &shown, around: diagnostic.span };
-        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
+        let excerpt = Excerpt::new(&shown, diagnostic.span, diagnostic.related.as_ref().map(|related| related.0));
+        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, &excerpt));
     }
 }
 
@@ -132,71 +134,18 @@ fn text_of_line(line: &[u8]) -> String {
     line.iter().map(shown).collect()
 }
 
-/// View of the files of a diagnostic that shows only the text around its span. This is necessary
-/// because lines can be megabytes long.
-struct Excerpt<'f> {
-    files: &'f SimpleFiles<String, String>,
-    around: Option<Span>,
-}
-
-impl Excerpt<'_> {
-    /// Number of bytes of a line shown before and after the start of the span.
-    const BEFORE: usize = 80;
-    const AFTER: usize = 120;
-}
-
-impl<'f> files::Files<'f> for Excerpt<'_> {
-    type FileId = usize;
-    type Name = String;
-    type Source = &'f str;
-
-    fn name(&'f self, id: usize) -> Result<String, files::Error> {
-        self.files.name(id)
-    }
-
-    fn source(&'f self, id: usize) -> Result<&'f str, files::Error> {
-        self.files.source(id)
-    }
-
-    fn line_index(&'f self, id: usize, byte: usize) -> Result<usize, files::Error> {
-        self.files.line_index(id, byte)
-    }
-
-    fn column_number(&'f self, id: usize, line: usize, byte: usize) -> Result<usize, files::Error> {
-        self.files.column_number(id, line, byte)
-    }
-
-    fn line_range(&'f self, id: usize, line: usize) -> Result<Range<usize>, files::Error> {
-        let (whole, source) = (self.files.line_range(id, line)?, self.files.source(id)?);
-        let place = self.around.filter(|span| span.file as usize == id).map_or(0, |span| span.start as usize);
-        let place = place.clamp(whole.start, whole.end);
-        let boundary = |from: usize| (from..whole.end).find(|&at| source.is_char_boundary(at)).unwrap_or(whole.end);
-        Ok(boundary(place.saturating_sub(Self::BEFORE).max(whole.start))..boundary(place.saturating_add(Self::AFTER)))
-    }
-}
-
-/// Returns true if a second span can be shown together with the first. In a long line, only the
-/// text around the first span is shown.
-fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
-    let Some(first) = first.filter(|first| first.file == second.file) else { return true };
-    let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;
-    let text = files.bytes(first.file).and_then(|bytes| bytes.get(between.clone())).unwrap_or_default();
-    between.len() < Excerpt::BEFORE || text.contains(&b'\n')
-}
-
-fn show(diagnostic: &Diagnostic, files: &Files) -> Shown<usize> {
+fn show(diagnostic: &Diagnostic, excerpt: &Excerpt) -> Shown<usize> {
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
         Severity::Note => Level::Note,
     };
-    let range = |span: Span| span.start as usize..span.end as usize;
     let mut labels = Vec::new();
-    if let Some(span) = diagnostic.span {
-        labels.push(Label::primary(span.file as usize, range(span)).with_message(printable_line(&diagnostic.label)));
+    if let Some((file, range)) = &excerpt.main {
+        labels.push(Label::primary(*file, range.clone()).with_message(printable_line(&diagnostic.label)));
     }
-    if let Some((span, what)) = diagnostic.related.as_ref().filter(|(span, _)| fits(diagnostic.span, *span, files)) {
-        labels.push(Label::secondary(span.file as usize, range(*span)).with_message(printable_line(what)));
+    if let (Some((file, range)), Some((_, what))) = (&excerpt.related, &diagnostic.related) {
+        labels.push(Label::secondary(*file, range.clone()).with_message(printable_line(what)));
     }
     let effect = diagnostic.effect.iter().map(|effect| format!("effect: {}", printable(effect)));
     let notes = effect.chain(diagnostic.help.iter().map(|help| format!("help: {}", printable(help)))).collect();

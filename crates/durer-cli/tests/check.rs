@@ -275,3 +275,60 @@ Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1.5 }
     let output = folder.run("check scene.txt").out;
     assert!(output.contains("the `Sphere` of line 1 of `parts.txt` is hidden by the `Sphere` of line 5"), "{output}");
 }
+
+/// A transform that moves an object out of sight is named, and not the plane or the camera.
+#[test]
+fn transforms_that_move_objects_out_of_sight_are_named() {
+    let folder = TestFolder::new();
+    let scene = |object: &str| {
+        format!(
+            "PerspectiveCamera {{ center 0 1 10 direction 0 -0.1 -1 up 0 1 0 angle 30 }}\nLights {{ DirectionalLight {{ \
+             direction -0.5 -1 -0.8 color 0.8 0.8 0.8 }} }}\nBackground {{ color 0.1 0.2 0.4 ambientLight 0.1 0.1 0.1 \
+             }}\nMaterials {{ PhongMaterial {{ diffuseColor 0.8 0.2 0.2 }} }}\nGroup {{ MaterialIndex 0\n{object}\nPlane \
+             {{ normal 0 1 0 offset -1 }} }}\n"
+        )
+    };
+    let said = |object: &str| {
+        folder.write("a.txt", scene(object));
+        folder.run("check a.txt").out
+    };
+    let order = said("Transform { Scale 8 8 8 Translate 0 -1 0 Sphere { center 0 0.125 0 radius 0.125 } }");
+    assert!(order.contains("warning[below-plane]") && order.contains("a.txt:6:1"), "{order}");
+    assert!(order.contains("in the reverse order, they would move it to 0 0 0"), "{order}");
+    assert!(!order.contains("check the `offset`"), "{order}");
+    let twice = said("Transform { Translate 3 0 0 Sphere { center 3 0 0 radius 0.9 } }");
+    assert!(twice.contains("from 3 0 0 to 6 0 0; without them, it would be in the picture"), "{twice}");
+    assert!(twice.contains("a.txt:6:1") && !twice.contains("--fix"), "{twice}");
+    let sound = said("Transform { Translate 0 -1 0 Scale 8 8 8 Sphere { center 0 0.125 0 radius 0.125 } }");
+    assert!(sound.contains("no findings"), "{sound}");
+}
+
+/// An error in a file and the place where the scene names the file are one finding.
+#[test]
+fn errors_in_files_are_one_finding() {
+    let folder = TestFolder::new();
+    folder.write("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
+    folder.write("a.txt", "Group {\n  TriangleMesh { obj_file zero.obj }\n}\n");
+    let output = folder.expect_exit(2, "check a.txt").out;
+    assert!(output.starts_with("error[bad-file]: vertex 0 does not exist"), "{output}");
+    assert!(output.contains("zero.obj:4:3") && output.contains("a.txt:2:27"), "{output}");
+    assert!(output.contains("named here") && output.contains("a.txt: 1 error"), "{output}");
+}
+
+/// Stars are too small for the samples that measure the brightness.
+#[test]
+fn bright_stars_in_a_dark_picture_are_sound() {
+    let folder = TestFolder::new();
+    let mut group = String::from("Group { MaterialIndex star\n");
+    for i in 0..40 {
+        group += &format!("Sphere {{ center {} {} -20 radius 0.05 }}\n", (i * 37) % 19 - 9, (i * 23) % 11 - 2);
+    }
+    let head = "PerspectiveCamera { center 0 2 8 direction 0 0 -1 up 0 1 0 angle 50 }\nBackground { color 0 0 0 }\n\
+                Materials { PrincipledMaterial star { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 } }\n";
+    folder.write("stars.txt", format!("{head}{group}}}\n"));
+    let output = folder.run("check stars.txt --integrator path").out;
+    assert!(!output.contains("too-dark"), "{output}");
+    folder.write("dim.txt", format!("{head}{group}}}\n").replace("Luminance 3", "Luminance 0.001"));
+    let output = folder.run("check dim.txt --integrator path").out;
+    assert!(output.contains("too-dark") || output.contains("one-color"), "{output}");
+}

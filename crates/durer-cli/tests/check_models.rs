@@ -152,6 +152,8 @@ const CASES: &[Case] = &[
         ],
         "bad-place",
     ),
+    // The light ends before its shape, and no shape follows it at all.
+    ("pbrt", PBRT, &[("\"rgb L\" [ 9 9 8 ]\n", "\"rgb L\" [ 9 9 8 ]\nAttributeEnd\nAttributeBegin\n")], "bad-place"),
     // The eye and the target are exchanged.
     (
         "pbrt",
@@ -186,6 +188,13 @@ const CASES: &[Case] = &[
         )],
         "lamp-turned",
     ),
+    (
+        "xml",
+        MITSUBA,
+        &[("<float name=\"fov\"", "<float name=\"far_clip\" value=\"3\"/><float name=\"fov\"")],
+        "clipped",
+    ),
+    ("xml", MITSUBA, &[("value=\"0.5,0.5,0.48\"", "value=\"128, 128, 122\"")], "color-range"),
     ("rad", RADIANCE, &[], ""),
     (
         "rad",
@@ -221,7 +230,9 @@ const CASES: &[Case] = &[
         &[("(0, 0.7, 0)\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]", "(0, 0.7, 0)")],
         "missing-field",
     ),
+    ("usda", USD, &[("(0, 0.7, 0)", "(0, 0.7, 0")], "syntax"),
     ("stl", STL, &[], ""),
+    ("obj", STL, &[], "bad-file"),
     (
         "stl",
         STL,
@@ -229,6 +240,8 @@ const CASES: &[Case] = &[
         "degenerate-mesh",
     ),
     ("ply", PLY, &[], ""),
+    // A point cloud is shown as small balls.
+    ("ply", CLOUD, &[], ""),
     (
         "ply",
         PLY,
@@ -264,6 +277,20 @@ end_header
 3 0 1 3
 3 0 3 2
 3 1 2 3
+";
+
+const CLOUD: &str = "ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z
+end_header
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+0.5 0.4 0.6
 ";
 
 const OBJ: &str = "v 1 0 0
@@ -317,6 +344,58 @@ fn models_whose_only_light_misses_them_are_reported() {
     };
     let output = TestFolder::new().expect_exit(1, &format!("check {}", model.display())).out;
     assert!(output.contains("mostly-black") && output.contains("the scene's only light does not reach it"), "{output}");
+}
+
+/// Findings about models name the words of the file and their places.
+#[test]
+fn places_and_words_are_those_of_the_file() {
+    let folder = TestFolder::new();
+    let said = |name: &str, text: &str, old: &str, new: &str| {
+        assert!(text.contains(old), "{old}");
+        folder.write(name, text.replacen(old, new, 1));
+        folder.run(&format!("check {name}")).out
+    };
+    let clip =
+        said("a.xml", MITSUBA, "<float name=\"fov\"", "<float name=\"far_clip\" value=\"3\"/><float name=\"fov\"");
+    assert!(clip.contains("a.xml:4:18") && clip.contains("write `far_clip "), "{clip}");
+    let color = said("b.xml", MITSUBA, "0.5,0.5,0.48", "128, 128, 122");
+    assert!(color.contains("divide") || color.contains("not to 255"), "{color}");
+    assert!(color.contains("128, 128, 122") && color.contains("^^^^^^^^^^^"), "{color}");
+    let word = said("c.xml", MITSUBA, "name=\"fov\"", "name=\"fieldOfView\"");
+    assert!(word.contains("no property `fieldOfView`") && word.contains("did you mean `fov`?"), "{word}");
+    let light = said("d.pbrt", PBRT, "[ 9 9 8 ]\n", "[ 9 9 8 ]\nAttributeEnd\nAttributeBegin\n");
+    assert!(light.contains("this `AreaLightSource` has no shape") && light.contains("d.pbrt:8:22"), "{light}");
+    assert!(!light.contains("no-emitter"), "{light}");
+    let open = said("e.usda", USD, "(0, 0.7, 0)", "(0, 0.7, 0");
+    assert!(open.contains("this `(` is not closed"), "{open}");
+}
+
+/// A surface that hides its back from the camera is named, and nothing else is blamed.
+#[test]
+fn a_model_seen_from_its_hidden_back_is_explained() {
+    let folder = TestFolder::new();
+    let quad = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\
+        \"rotation\":[0,1,0,0]},{\"camera\":0,\"translation\":[0.5,0.5,3]}],\"cameras\":[{\"type\":\"perspective\",\
+        \"perspective\":{\"yfov\":0.7,\"znear\":0.1}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],\"materials\":[{}],\
+        \"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\
+        \"max\":[1,1,0]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\
+        \"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
+    let quad = quad.replace("\"scenes\":[{\"nodes\":[0]}]", "\"scenes\":[{\"nodes\":[0,1]}]");
+    let quad = quad.replace("\"translation\":[0.5,0.5,3]", "\"translation\":[-0.4,0.4,3]");
+    folder.write("back.gltf", &quad);
+    let output = folder.expect_exit(1, "check back.gltf").out;
+    assert!(output.contains("shows the camera only its back") && output.contains("`doubleSided`"), "{output}");
+    assert!(!output.contains("all-missed") && !output.contains("too-dark"), "{output}");
+    folder.write("front.gltf", quad.replace("[0,1,0,0]", "[0,0,0,1]").replace("[-0.4,0.4,3]", "[0.4,0.4,3]"));
+    let output = folder.run("check front.gltf").out;
+    assert!(!output.contains("only its back"), "{output}");
+    // Extensions, characters and alignment that other programs do not accept.
+    folder.write("char.gltf", quad.replace("AAAAAAAAAAAAAAAAAACAPw", "AAAAAAAA*AAAAAAAAACAPw"));
+    let output = folder.expect_exit(2, "check char.gltf").out;
+    assert!(output.contains("character 9 of the data, `*`"), "{output}");
+    folder.write("extension.gltf", quad.replace("{\"mesh\":0,", "{\"extensions\":{\"KHR_x\":{}},\"mesh\":0,"));
+    let output = folder.run("check extension.gltf").out;
+    assert!(output.contains("the file uses KHR_x, but `extensionsUsed` does not list it"), "{output}");
 }
 
 /// Emission in bytes is reported at its statement in the material file.

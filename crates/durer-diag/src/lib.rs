@@ -211,6 +211,17 @@ impl Diagnostics {
         false
     }
 
+    /// Drops the diagnostics for which `keep` returns false.
+    pub fn retain(&mut self, keep: impl Fn(&Diagnostic) -> bool) {
+        let is_dropped = |diagnostic: &&Diagnostic| !keep(diagnostic);
+        let errors =
+            |list: &[Diagnostic]| list.iter().filter(is_dropped).filter(|d| d.severity == Severity::Error).count();
+        let dropped = errors(&self.list);
+        self.errors -= dropped;
+        self.warnings -= self.list.iter().filter(is_dropped).count() - dropped;
+        self.list.retain(keep);
+    }
+
     /// Adds the diagnostics of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
         let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();
@@ -221,6 +232,11 @@ impl Diagnostics {
         }
         self.errors += uncollected.0;
         self.warnings += uncollected.1;
+    }
+
+    /// Adds details to the first error, if there is one.
+    pub fn add_to_first_error(&mut self, add: impl FnOnce(&mut Diagnostic)) {
+        self.list.iter_mut().find(|diagnostic| diagnostic.severity == Severity::Error).map(add);
     }
 
     /// Returns true if the collection contains an error.

@@ -103,7 +103,11 @@ impl<'a> Words<'a> {
 /// Reads an OFF file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
+    let before = report.count();
     let data = parse(bytes, &mut report);
+    if data.is_none() {
+        report_swapped_counts(bytes, &mut report, before);
+    }
     let data = data.unwrap_or_default();
     if data.triangles.is_empty() && !report.has_errors() {
         report.warning(0..0, "the mesh has no triangles");
@@ -219,6 +223,39 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     Some(data)
 }
 
+/// Replaces the errors of a file whose header states the number of faces before that of vertices.
+fn report_swapped_counts(bytes: &[u8], report: &mut Report, before: usize) {
+    let mut rows = Vec::new();
+    let mut words = Words { bytes, at: 0 };
+    while let Some(first) = words.next(false) {
+        let mut row = vec![first];
+        while let Some(word) = words.next(true) {
+            row.push(word);
+        }
+        rows.push(row);
+    }
+    let is_count = |word: &Range<usize>| bytes[word.clone()].iter().all(u8::is_ascii_digit);
+    // The counts are in the first line, or in the second one after the word `OFF`.
+    let is_header = |row: &Vec<Range<usize>>| row.len() == 3 && row.iter().all(is_count);
+    let Some(header) = rows.iter().take(2).position(is_header) else { return };
+    let [vertices, faces] = [0, 1].map(|i| std::str::from_utf8(&bytes[rows[header][i].clone()]).unwrap_or_default());
+    let mut body = rows[header + 1..].iter().map(Vec::len);
+    // A vertex has three coordinates, and a face has at least three indices after their number.
+    let triples = body.by_ref().take_while(|words| *words == 3).count();
+    let others = rows.len() - header - 1 - triples;
+    if vertices == faces || faces != triples.to_string() || vertices != others.to_string() {
+        return;
+    }
+    let at = rows[header][0].start..rows[header][1].end;
+    report.truncate(before);
+    report
+        .error(
+            at,
+            format!("the header states {vertices} vertices and {faces} faces, but there are {triples} and {others}"),
+        )
+        .help = Some(format!("the number of vertices comes first: write `{faces} {vertices}`"));
+}
+
 /// Returns a colour of three or four numbers, which are from 0 to 1, or from 0 to 255.
 fn color_of(numbers: &[f32]) -> Option<[f32; 4]> {
     let scale = if numbers.iter().any(|number| *number > 1.0) { 255.0 } else { 1.0 };
@@ -286,6 +323,10 @@ mod tests {
         assert_eq!(message("OFF\n9999999 1 0\n0 0 0\n"), "4 the file is too short for 9999999 vertices");
         assert!(message("OFF BINARY\n").contains("save") || message("OFF BINARY\n").contains("binary OFF"));
         assert!(message("OFF\n3 1 0\n0 0 0\n").ends_with("the file ends before a coordinate of a vertex"));
+        let swapped = "OFF\n1 3 0\n0 0 0\n1 0 0\n-1 1 0\n3 0 1 2\n";
+        assert_eq!(message(swapped), "4 the header states 1 vertices and 3 faces, but there are 3 and 1");
+        let too_few = "OFF\n2 1 0\n0 0 0\n1 0 0\n-1 1 0\n3 0 1 2\n";
+        assert!(!message(too_few).contains("the header states"), "{}", message(too_few));
         assert!(message("junk").contains("expected `OFF`, found `junk`"));
     }
 }

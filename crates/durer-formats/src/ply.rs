@@ -38,9 +38,23 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
     let mut report = Report::new(file, diagnostics);
     let mesh = read_reporting(bytes, &mut report).unwrap_or_default();
     if mesh.triangles.is_empty() && !report.has_errors() {
-        report.warning(0..0, "the mesh has no triangles");
+        let warning = report.warning(0..0, "the mesh has no triangles");
+        if is_point_cloud(bytes) {
+            warning.code = POINT_CLOUD;
+        }
     }
     report.finish(diagnostics, mesh)
+}
+
+/// Code of the warning about a mesh without triangles if its file is a point cloud.
+pub(super) const POINT_CLOUD: &str = "point-cloud";
+
+/// Returns true if the header of a file declares vertices only.
+fn is_point_cloud(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let lines = head.split(|byte| *byte == b'\n').take_while(|line| !line.starts_with(b"end_header"));
+    let mut elements = lines.filter_map(|line| line.strip_prefix(b"element "));
+    elements.next().is_some_and(|first| first.starts_with(b"vertex ")) && elements.next().is_none()
 }
 
 fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {

@@ -103,6 +103,12 @@ impl Report {
         self.diagnostics.last_mut()
     }
 
+    /// Drops all diagnostics except the first `count`, because another one explains them.
+    pub fn truncate(&mut self, count: usize) {
+        self.diagnostics.truncate(count);
+        self.errors = self.diagnostics.iter().filter(|known| known.severity == Severity::Error).count();
+    }
+
     /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
         self.diagnostics.len()

@@ -134,7 +134,12 @@ fn read_option_file(input: &ReadInput, path: &Path, diagnostics: &mut Diagnostic
 /// Reads a mesh file as a scene that contains one mesh without a material.
 fn one_mesh(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
-    let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
+    let mut own = Diagnostics::default();
+    let data = read_mesh(input.bytes, input.file, input.name, &mut own);
+    // A point cloud is shown as small balls, so it needs no triangles.
+    own.retain(|diagnostic| diagnostic.code != super::ply::POINT_CLOUD);
+    diagnostics.extend(own);
+    let data = data?;
     input.files.borrow_mut().truncate(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
         // A file that has vertices but no faces is a point cloud.

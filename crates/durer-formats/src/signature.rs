@@ -56,7 +56,10 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         let span = Span { file, start: 0, end: found.length as u32 };
         return Some(Diagnostic::error(message).code("bad-file").at(span).help(found.help));
     }
-    let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
+    let stl: (&[u8], &str, Option<&str>) = (b"solid", "STL", Some("stl"));
+    let is_stl = super::stl::is_text(bytes);
+    let signature = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start));
+    let (start, what, own) = signature.or(is_stl.then_some(&stl))?;
     // Packages of USD are ZIP archives too.
     let own_package = *own == Some("3mf") && extensions.contains(&"usdz");
     if own_package || own.is_some_and(|own| extensions.contains(&own)) {
@@ -121,5 +124,8 @@ mod tests {
         assert_eq!(messages(b"glTF", "b.gltf", &["gltf", "glb"]), None);
         assert_eq!(messages(b"ply\n", "b.ply", &["ply"]), None);
         assert_eq!(messages(b"plywood", "b.obj", &["obj"]), None);
+        let stl = b"solid a\nfacet normal 0 0 1\n outer loop\n vertex 0 0 0\n";
+        assert!(messages(stl, "b.obj", &["obj"]).unwrap().contains("rename the file to `b.stl`"));
+        assert_eq!(messages(stl, "b.stl", &["stl"]), None);
     }
 }

@@ -33,7 +33,7 @@ fn recognise(bytes: &[u8]) -> bool {
 }
 
 /// Returns true if a file is a text file. Binary files can also begin with the word `solid`.
-fn is_text(bytes: &[u8]) -> bool {
+pub(super) fn is_text(bytes: &[u8]) -> bool {
     let head =
         bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
     let head = head.trim_ascii_start();

@@ -226,6 +226,8 @@ fn block_end(text: &[u8], start: usize) -> Option<usize> {
 
 fn finding(diagnostic: &Diagnostic, files: &Files) -> Finding {
     let other = diagnostic.span.filter(|span| span.file != OWN).and_then(|span| files.name(span.file));
+    // If the problem is in another file, the place is where the scene names that file.
+    let named = diagnostic.related.as_ref().filter(|_| other.is_some()).and_then(|(span, _)| place(files, *span));
     Finding {
         severity: match diagnostic.severity {
             diag::Severity::Note => Severity::Note,
@@ -237,7 +239,7 @@ fn finding(diagnostic: &Diagnostic, files: &Files) -> Finding {
         help: diagnostic.help.clone(),
         effect: diagnostic.effect.clone(),
         file: other.map(Into::into),
-        place: diagnostic.span.and_then(|span| place(files, span)),
+        place: diagnostic.span.and_then(|span| place(files, span)).or(named),
         fix: diagnostic
             .fix
             .iter()

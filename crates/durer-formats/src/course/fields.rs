@@ -90,7 +90,13 @@ impl Reader<'_, '_> {
             // If this dialect has no word for a field, the field has a fixed value. For example,
             // the centre of a sphere in a node is fixed.
             let Some(word) = field.keyword(dialect) else { continue };
-            let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
+            let alike = || fields.iter().zip(&given).filter(|(f, _)| f.required && f.keyword(dialect) == Some(word));
+            let (wanted, found) = (alike().count(), alike().filter(|(_, place)| place.is_some()).count());
+            let message = match found {
+                0 => format!("`{name}` has no `{word}`"),
+                _ => format!("`{name}` needs {wanted} `{word}` fields, but has {found}"),
+            };
+            let error = Diagnostic::error(message).code("missing-field").at(keyword);
             self.error(match example(word) {
                 Some(value) => error.help(format!("add it to the block, for example `{word} {value}`")),
                 None => error,

@@ -131,6 +131,12 @@ impl IncludePreprocessor<'_, '_, '_> {
                 return Vec::new();
             }
         };
+        // The stack does not contain the scene itself because its name is not known here.
+        if bytes[..] == *self.texts.own.1 {
+            let error = Diagnostic::error(format!("`{name}` includes itself")).code("include");
+            self.diagnostics.push(error.at(keyword.join(at)));
+            return Vec::new();
+        }
         if let Some(problem) = super::not_text_reason(&bytes) {
             let start = Span { file: number, start: 0, end: 0 };
             let error = Diagnostic::error(problem).code("syntax").at(start);

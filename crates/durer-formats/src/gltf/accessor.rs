@@ -262,6 +262,12 @@ impl Accessor {
             at.get("byteOffset").unwrap_or(*at).error("ACCESSOR_OFFSET_ALIGNMENT", message);
             return None;
         }
+        let start = view.offset.saturating_add(self.offset);
+        if !start.is_multiple_of(self.component.size()) {
+            let size = self.component.size();
+            let message = format!("the data begin at byte {start} of the buffer, which is not a multiple of {size}");
+            at.warning("ACCESSOR_TOTAL_OFFSET_ALIGNMENT", message);
+        }
         let end = self.stride().checked_mul(self.count - 1).and_then(|end| end.checked_add(self.offset + self.row()));
         if end.is_none_or(|end| end > bytes) {
             let message = format!(

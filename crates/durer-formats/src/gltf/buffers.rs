@@ -4,10 +4,10 @@ use super::Model;
 use super::json::JsonRef;
 use crate::files::percent_decoded;
 use crate::report::quoted;
-use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::general_purpose::{GeneralPurpose, NO_PAD};
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
+use base64::{DecodeError, Engine};
 use durer_scene::describe::FileName;
 use serde_json::Value;
 use std::ops::Range;
@@ -49,6 +49,8 @@ pub(super) struct Buffer {
 /// Buffer view of a glTF file, which is a part of a buffer with an optional stride.
 #[derive(Clone)]
 pub(super) struct BufferView {
+    /// Offset of the first byte in the buffer.
+    pub offset: usize,
     pub length: usize,
     pub slice: Option<SharedBytes>,
     pub stride: Option<usize>,
@@ -76,6 +78,7 @@ pub(super) enum UriTarget<'a> {
 pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        let mut wrong = None;
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
             let Some(kind) = kind.strip_suffix(";base64") else {
                 // Without `;base64`, the data is percent-encoded text.
@@ -85,10 +88,23 @@ pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
                 return None;
             }
             let config: GeneralPurposeConfig = NO_PAD.with_decode_padding_mode(DecodePaddingMode::Indifferent);
-            Some((kind.split(';').next()?, GeneralPurpose::new(&STANDARD, config).decode(data).ok()?))
+            let decoded = GeneralPurpose::new(&STANDARD, config).decode(data);
+            if let Err(DecodeError::InvalidByte(offset, _)) = &decoded {
+                wrong = data.get(*offset..).and_then(|rest| rest.chars().next()).map(|found| (found, offset + 1));
+            }
+            Some((kind.split(';').next()?, decoded.ok()?))
         });
         if data.is_none() {
-            at.error("INVALID_URI", "the data URI is invalid");
+            at.error(
+                "INVALID_URI",
+                match wrong {
+                    Some((found, place)) => format!(
+                        "the data URI is invalid: character {place} of the data, {}, does not occur in base64",
+                        quoted(found.to_string().as_bytes())
+                    ),
+                    None => "the data URI is invalid".to_string(),
+                },
+            );
         }
         return data.map(|(kind, bytes)| UriTarget::Data(kind, bytes.into()));
     }
@@ -232,7 +248,7 @@ impl Model<'_> {
             Some(_) => self.decompress_view(&at.get("extensions")?.get(MESHOPT)?, length),
             None => buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?)),
         };
-        end.map(|_| BufferView { length, slice, stride })
+        end.map(|_| BufferView { offset, length, slice, stride })
     }
 }
 

@@ -90,7 +90,7 @@ impl Model<'_> {
         }
         accessor.fill(
             component,
-            BufferView { length: bytes.len(), slice: Some(SharedBytes::whole(bytes.into())), stride: None },
+            BufferView { offset: 0, length: bytes.len(), slice: Some(SharedBytes::whole(bytes.into())), stride: None },
         );
         accessor.check_values(at);
         Some(())

@@ -165,6 +165,7 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
 fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
     root.object()?;
     check_version(&root)?;
+    report_unlisted_extensions(&root);
     let quantized = required(&root);
     if root.report.has_errors() {
         return None;
@@ -315,6 +316,31 @@ fn required(root: &JsonRef) -> bool {
         });
     }
     quantized
+}
+
+/// Reports extensions that the file uses without listing them.
+fn report_unlisted_extensions(root: &JsonRef) {
+    let listed: Vec<&str> =
+        root.value["extensionsUsed"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let (mut rest, mut unlisted) = (vec![root.value], BTreeSet::new());
+    while let Some(value) = rest.pop() {
+        match value {
+            Value::Array(items) => rest.extend(items),
+            Value::Object(fields) => {
+                let own = fields.get("extensions").and_then(Value::as_object);
+                unlisted
+                    .extend(own.into_iter().flat_map(|own| own.keys()).filter(|name| !listed.contains(&name.as_str())));
+                // Extras can contain anything.
+                rest.extend(fields.iter().filter(|(name, _)| *name != "extras").map(|(_, field)| field));
+            }
+            _ => {}
+        }
+    }
+    for name in unlisted {
+        let message =
+            format!("the file uses {name}, but `extensionsUsed` does not list it: other programs may ignore it");
+        root.report.report(Diagnostic::note, "UNDECLARED_EXTENSION", "", &message);
+    }
 }
 
 impl Model<'_> {

@@ -225,6 +225,9 @@ impl Model<'_> {
                 let accessor = self.attribute(at, key, &[3], &[]);
                 let normals = accessor.and_then(|accessor| self.rows_as(accessor, at, Vec3::from_array));
                 data.normals = normals.unwrap_or_default();
+                if !data.normals.is_empty() && data.normals.iter().all(|normal| *normal == Vec3::ZERO) {
+                    at.warning("odd-normals", "all normals are 0 0 0: the normals of the faces are used instead");
+                }
             }
             "TANGENT" => {
                 let rows = self.attribute(at, key, &[4], &[]).and_then(|accessor| self.rows(accessor, at));

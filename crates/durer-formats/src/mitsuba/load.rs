@@ -225,6 +225,9 @@ impl<'a> Loader<'a> {
             kind if OTHER_ELEMENTS.contains(&kind) => {
                 if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
                     self.add_property(parent, name, value, at);
+                    if let (Some(own), Some(last)) = (tag.get("name"), parent.properties.last_mut()) {
+                        last.written = Some((own.value.to_string(), own.at));
+                    }
                 }
             }
             other => {
@@ -251,7 +254,13 @@ impl<'a> Loader<'a> {
         if let Some((id, at)) = id {
             self.register(id, at, plugin.clone());
         }
-        parent.properties.push(Property { name, value: Value::Plugin(plugin), at, used: Cell::default() });
+        parent.properties.push(Property {
+            name,
+            value: Value::Plugin(plugin),
+            at,
+            written: None,
+            used: Cell::default(),
+        });
         Ok(())
     }
 
@@ -282,7 +291,7 @@ impl<'a> Loader<'a> {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
             return self.report.push(error.related(other.at, "the first one is here"));
         }
-        parent.properties.push(Property { name, value, at, used: Cell::default() });
+        parent.properties.push(Property { name, value, at, written: None, used: Cell::default() });
     }
 
     fn default(&mut self, tag: &Tag) {

@@ -31,6 +31,8 @@ pub(super) struct Property {
     pub value: Value,
     /// Span of the value.
     pub at: Span,
+    /// Name as the file writes it, and its span, if the property is a plain value.
+    pub written: Option<(String, Span)>,
     pub used: Cell<bool>,
 }
 
@@ -185,13 +187,26 @@ impl Plugin {
                 (true, "") => {
                     format!("this nested plugin is ignored: the {} `{}` does not use it", self.element, self.kind)
                 }
-                (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.element, self.kind),
+                (_, name) => {
+                    let name = property.written.as_ref().map_or(name, |(written, _)| written);
+                    format!("the {} `{}` has no property `{name}`: it is ignored", self.element, self.kind)
+                }
             };
-            let help = suggest(&property.name, known_names.iter().copied());
-            let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
+            let spelt_out = known_names.iter().find(|known| **known == initials(&property.name));
+            let help = match spelt_out {
+                Some(known) => Some(format!("did you mean `{known}`?")),
+                None => suggest(&property.name, known_names.iter().copied()),
+            };
+            let at = property.written.as_ref().map_or(property.at, |(_, at)| *at);
+            let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(at);
             report.push(durer_diag::Diagnostic { help, ..warning });
         }
     }
+}
+
+/// Returns the first letters of the words of a name: `fov` for `field_of_view`.
+fn initials(name: &str) -> String {
+    name.split('_').filter_map(|word| word.chars().next()).collect()
 }
 
 /// Returns true if a shape is a sphere whose normals point inwards because of `flip_normals` or a

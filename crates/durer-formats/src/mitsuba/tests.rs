@@ -117,7 +117,7 @@ fn diagnostics_have_their_place() {
         ("<shape type='sphere'><ref id='m'/></shape>", "m'/>", "error no plugin has the id `m`"),
         (
             "<shape type='sphere'><float name='radus' value='2'/></shape>",
-            "2'/>",
+            "radus'",
             "warning the shape `sphere` has no property `radus`: it is ignored (did you mean `radius`?)",
         ),
         (

@@ -299,6 +299,15 @@ impl Reader<'_, '_> {
             });
             return None;
         };
+        if is_absolute(&name) && file.path != name.replace('\\', "/") {
+            let message = format!(
+                "the absolute path {} does not exist here: {} beside the model is used",
+                quoted(name.as_bytes()),
+                quoted(file.path.as_bytes())
+            );
+            let note = Diagnostic::note(message).code("absolute-path").at(span);
+            diagnostics.push_once(note.help("write only the name: other programs look only for the absolute path"));
+        }
         let path = format!("{}#{}/{word}", self.path, m.name);
         self.library.pictures.insert(path.clone(), TextureImage { bytes: PictureBytes::File(file.path), mapping });
         Some(FileName { path, span })
@@ -340,6 +349,11 @@ fn names_normals(rest: &[Word]) -> bool {
     let name = rest.last().map(|name| name.text.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
+}
+
+/// Returns true if a path begins with a slash or with the letter of a drive.
+fn is_absolute(path: &str) -> bool {
+    path.starts_with(['/', '\\']) || path.get(1..3).is_some_and(|drive| drive == ":/" || drive == ":\\")
 }
 
 /// Finds a file of the scene, either at its path as written or by its bare file name in the folder

@@ -388,6 +388,9 @@ impl Reader<'_> {
             }
         }
         let Some((_, state, _)) = self.stack.pop() else { return };
+        if scope != Scope::Transform {
+            self.check_area_light(state.area_light.as_ref(), Some((end, at)));
+        }
         match scope {
             Scope::Transform => self.state.transforms = state.transforms,
             _ => self.state = state,
@@ -478,6 +481,10 @@ impl Reader<'_> {
     }
 
     fn finish(&mut self) {
+        // After an error, the rest of the file may not have been read.
+        if !self.report.has_errors() {
+            self.check_area_light(None, None);
+        }
         for (scope, _, at) in self.stack.drain(..) {
             let end = match scope {
                 Scope::Attribute => "AttributeEnd",

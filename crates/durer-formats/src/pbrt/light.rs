@@ -173,6 +173,26 @@ impl Reader<'_> {
         }
     }
 
+    /// Warns about an area light that no shape follows in its scope. `outer` is the light of the
+    /// enclosing scope, and `end` the directive that closes the scope.
+    pub fn check_area_light(&self, outer: Option<&Rc<AreaLight>>, end: Option<(&str, Span)>) {
+        let Some(light) = &self.state.area_light else { return };
+        let is_outer = outer.is_some_and(|outer| (outer.at.file, outer.at.start) == (light.at.file, light.at.start));
+        if is_outer || self.used_lights.contains(&(light.at.file, light.at.start)) {
+            return;
+        }
+        let message = match end {
+            Some((end, _)) => format!("this `AreaLightSource` has no shape: no `Shape` follows it before `{end}`"),
+            None => "this `AreaLightSource` has no shape: no `Shape` follows it".to_string(),
+        };
+        let warning = durer_diag::Diagnostic::warning(message).code("bad-place").at(light.at);
+        let warning = warning.effect("the light emits nothing").help("write it before its shape, in the same scope");
+        self.report.push(match end {
+            Some((_, at)) => warning.related(at, "the scope ends here"),
+            None => warning,
+        });
+    }
+
     /// Executes an `AreaLightSource` directive.
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let third = self.language == Language::V3;

@@ -38,6 +38,9 @@ impl Reader<'_> {
     /// Executes a `Shape` directive, which adds the shape to the scene with the current material
     /// and area light.
     pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        if let Some(light) = &self.state.area_light {
+            self.used_lights.insert((light.at.file, light.at.start));
+        }
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
         let to_world = self.map(at);

@@ -109,6 +109,8 @@ pub(super) struct Reader<'a> {
     /// Number of shapes that emit light because of an `AreaLightSource` outside of any scope, and
     /// the materials of these shapes, by the span's start and file.
     pub open_lights: BTreeMap<(u32, u32), (Span, usize, BTreeSet<usize>)>,
+    /// Spans of the `AreaLightSource` directives that a shape follows, by file and start.
+    pub used_lights: BTreeSet<(u32, u32)>,
     pub infinite: Vec<InfiniteLight>,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
@@ -143,6 +145,7 @@ impl<'a> Reader<'a> {
             too_early: None,
             in_world: false,
             open_lights: BTreeMap::new(),
+            used_lights: BTreeSet::new(),
             infinite: Vec::new(),
             meshes: BTreeMap::new(),
             scene: Scene::default(),

@@ -57,7 +57,13 @@ pub(super) fn scene(package: Package, report: &SharedReport) -> Option<Scene> {
     let items = show.convert_refs(&root, &model.items, 0);
     show.scene.root = Some(scene::Group { objects: items });
     if show.count == 0 && !report.has_errors() {
-        let warning = durer_diag::Diagnostic::warning("the file has no visible shapes");
+        let warning = match model.items.is_empty() && !model.objects.is_empty() {
+            true => durer_diag::Diagnostic::warning(format!(
+                "the file shows none of its objects: `<build>` in `{root}` has no `<item>`"
+            ))
+            .help("add an item for each object, such as `<item objectid=\"1\"/>`"),
+            false => durer_diag::Diagnostic::warning("the file has no visible shapes"),
+        };
         report.push(warning.code("no-objects").at(at));
     }
     Some(show.scene)

@@ -98,6 +98,13 @@ fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
 }
 
 #[test]
+fn a_build_without_items_is_reported() {
+    let messages = read(&model("", "", [""; 4], "")).1;
+    let expected = "the file shows none of its objects: `<build>` in `3D/a.model` has no `<item>`";
+    assert!(messages.iter().any(|message| message.ends_with(expected)), "{messages:?}");
+}
+
+#[test]
 fn units_items_and_components_are_transformed() {
     let scene = clean(&model("", "", [""; 4], ITEM));
     let data = scene.assets.meshes.values().next().unwrap();

@@ -33,7 +33,7 @@ use super::growth::ResourceLimits;
 use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::too_large;
-use durer_diag::{Diagnostic, Diagnostics};
+use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Background, Group, Scene};
 use files::LayerFiles;
@@ -98,15 +98,26 @@ fn scene(input: &ReadInput, report: &SharedReport, limits: &ResourceLimits) -> O
     }
     stage.check_variant();
     reader.set_camera();
-    let (mut scene, has_dome) = (reader.scene, reader.has_dome);
+    let (mut scene, has_dome, invisible) = (reader.scene, reader.has_dome, reader.invisible);
     if !has_dome && scene.is_lit {
         scene.background = Background { color: Vec3::ZERO, ..scene.background };
     }
     if objects.is_empty() && !report.has_errors() {
-        report.push(Diagnostic::warning("the scene has no visible surfaces").code("no-objects"));
+        report.push(no_surfaces(&invisible));
     }
     scene.root = Some(Group { objects }).filter(|root| !root.objects.is_empty());
     Some(scene)
+}
+
+/// Returns the warning about a scene without surfaces, at the first of the invisible prims.
+fn no_surfaces(invisible: &[Span]) -> Diagnostic {
+    let message = "the scene has no visible surfaces";
+    let Some(first) = invisible.first() else { return Diagnostic::warning(message).code("no-objects") };
+    let message = match invisible.len() {
+        1 => format!("{message}: the `visibility` of this prim is `invisible`"),
+        count => format!("{message}: the `visibility` of this prim and of {} more is `invisible`", count - 1),
+    };
+    Diagnostic::warning(message).code("no-objects").at(*first).help("remove `visibility`, or write `inherited`")
 }
 
 /// Returns the time at which attributes are read: the requested time in seconds, or the start of

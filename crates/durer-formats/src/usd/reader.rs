@@ -35,6 +35,8 @@ pub(super) struct Reader<'s, 'a> {
     pub cameras: Vec<CameraData>,
     /// True after the first dome light.
     pub has_dome: bool,
+    /// Spans of the prims that are invisible, and whose descendants are therefore left out.
+    pub invisible: Vec<Span>,
 }
 
 /// Material of the scene, with the names of the texture coordinates that its pictures use.
@@ -97,6 +99,7 @@ impl<'s, 'a> Reader<'s, 'a> {
             meshes: HashMap::new(),
             cameras: Vec::new(),
             has_dome: false,
+            invisible: Vec::new(),
         }
     }
 
@@ -149,6 +152,10 @@ impl<'s, 'a> Reader<'s, 'a> {
         let bound = purposes.into_iter().find_map(|name| prim.targets(name).into_iter().next());
         if bound.is_none() && prim.property_names().iter().any(|name| name.starts_with("material:binding:collection")) {
             let message = "bindings of materials to collections have no counterpart: they are left out";
+            self.stage.files.report.unsupported_once(prim.span(), message);
+        }
+        if let Some(path) = bound.as_ref().filter(|path| self.stage.prim(path).is_none()) {
+            let message = format!("the material `{path}` does not exist: the display colour is used");
             self.stage.files.report.unsupported_once(prim.span(), message);
         }
         bound

@@ -365,14 +365,28 @@ impl Parser<'_> {
         if depth > MAX_DEPTH {
             return self.error(format!("values are nested more than {MAX_DEPTH} deep"));
         }
+        let open = self.lexer.last();
         loop {
             match self.lexer.next()? {
                 Token::Number(number) => numbers.push(number),
                 Token::Symbol('(') => self.tuple(numbers, depth + 1)?,
                 Token::Symbol(',') => {}
                 Token::Symbol(')') => return Ok(()),
+                other if self.is_after_tuple(&other) => {
+                    return Err(SyntaxError { at: open, message: "this `(` is not closed: a `)` is missing".into() });
+                }
                 other => return self.error(format!("expected a number, found {other}")),
             }
+        }
+    }
+
+    /// Returns true if a token cannot be in a tuple, but only after it: a closing bracket, the end
+    /// of the file, or the type of a property before its name.
+    fn is_after_tuple(&mut self, token: &Token) -> bool {
+        match token {
+            Token::Symbol(']' | '}') | Token::End => true,
+            Token::Word(_) => matches!(self.lexer.peek(), Ok(Token::Word(_) | Token::Symbol('['))),
+            _ => false,
         }
     }
 

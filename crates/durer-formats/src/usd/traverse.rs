@@ -38,9 +38,11 @@ impl Reader<'_, '_> {
             // An invisible camera can be used.
             self.read_camera(prim, here.to_world);
         }
-        if self.text(prim, "visibility").as_deref() == Some("invisible")
-            || matches!(self.text(prim, "purpose").as_deref(), Some("proxy" | "guide"))
-        {
+        if self.text(prim, "visibility").as_deref() == Some("invisible") {
+            self.invisible.push(prim.span());
+            return;
+        }
+        if matches!(self.text(prim, "purpose").as_deref(), Some("proxy" | "guide")) {
             return;
         }
         if type_name == "PointInstancer" {

@@ -148,8 +148,8 @@ impl<'r> Loader<'r> {
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
     }
 
-    /// Parses a file. If the file has errors, also reports an error at the place where the scene
-    /// names it.
+    /// Parses a file. If the file has errors, the first one also shows the place where the scene
+    /// names the file.
     fn parsed<T>(
         &mut self,
         name: &FileName,
@@ -162,11 +162,15 @@ impl<'r> Loader<'r> {
         let mut own = Diagnostics::default();
         let data = read(&bytes, file, &mut own);
         self.resources.files.truncate(file, 0, &own);
-        if own.has_errors() {
-            let message = format!("cannot use the {what} `{}`", name.path);
-            let error = Diagnostic::error(message).code("bad-file").at(name.span);
-            diagnostics.push(error.label("named here"));
-        }
+        own.add_to_first_error(|error| {
+            if error.code.is_empty() {
+                error.code = "bad-file";
+            }
+            error.effect.get_or_insert(format!("the {what} `{}` cannot be used", name.path));
+            if name.span.has_position() {
+                error.related.get_or_insert((name.span, "named here".into()));
+            }
+        });
         diagnostics.extend(own);
         data
     }

@@ -67,6 +67,11 @@ struct Decomposition {
 }
 
 impl ProjectiveCamera {
+    /// Returns the pixel to which the matrix maps the points on the camera's axis.
+    pub fn principal_point(&self) -> Vec2 {
+        self.parts().intrinsic.z_axis.truncate().as_vec2()
+    }
+
     fn sheet(&self) -> PictureSheet {
         PictureSheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }

@@ -167,7 +167,6 @@ pub(super) fn inner_angle(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// a spot.
 fn too_close(scene_probe: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let point = point(&scene_probe.world().lights()[light])?;
-    point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
     let world = scene_probe.world();
     let steps = (0..26).map(|i| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
@@ -181,7 +180,7 @@ fn too_close(scene_probe: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Reports lights with attenuation that are just above a surface.
+/// Reports lights that are just above a surface.
 pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
     let points = hit_points(scene_probe);
     let mut findings = Vec::new();
@@ -213,10 +212,14 @@ pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
             continue;
         }
         let middle = away[away.len() / 2];
+        let fades = point.attenuation.is_some_and(|a| a.z > 0.0 || a.y > 0.0);
         let diagnostic =
             Diagnostic::warning(format!("this light is {} from the {}", number(near), scene_probe.object(object)))
                 .related(scene_probe.object_span(object), "this object")
-                .effect("the light makes a bright spot on the object and illuminates hardly anything else")
+                .effect(match fades {
+                    true => "the light makes a bright spot on the object and illuminates hardly anything else",
+                    false => "the light hits the object at grazing angles, so it illuminates hardly more than a spot",
+                })
                 .help(format!(
                     "the mean distance of the visible points is {}: move the light away from the object",
                     number(middle)

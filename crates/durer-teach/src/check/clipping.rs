@@ -13,7 +13,7 @@ const MIN_FREE_SHARE: f32 = 0.01;
 /// Returns the clip distances of the camera, near and far, if it has any.
 fn clip_distances(camera: &Camera) -> Option<(Option<f32>, Option<f32>)> {
     let (near, far) = match camera {
-        Camera::Orthographic(camera) => (camera.near, None),
+        Camera::Orthographic(camera) => (camera.near, camera.far),
         Camera::ThinLens(camera) => (Some(camera.near).filter(|near| *near > 0.0), camera.far),
         _ => (None, None),
     };
@@ -51,6 +51,13 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     let depths = || free.iter().filter(|(_, bounded)| *bounded || !any_bounded).map(|(depth, _)| *depth);
     let (least, most) = (depths().fold(f32::INFINITY, f32::min), depths().fold(f32::NEG_INFINITY, f32::max));
     let low = if least > 0.0 { 0.9 * least } else { least - 0.1 * (most - least).max(least.abs()) };
+    let words = |field: &'static str| match (scene_probe.model_format().map(|format| format.name), field) {
+        (Some("Mitsuba"), "near") => "near_clip",
+        (Some("Mitsuba"), _) => "far_clip",
+        (Some("glTF"), "near") => "znear",
+        (Some("glTF"), _) => "zfar",
+        _ => field,
+    };
     let span = scene_probe.input.scene.camera_span;
     let place = |field: &str| scene_probe.field_span(span, &[field]);
     let (message, help, field, edits) = match (near, far) {
@@ -62,22 +69,24 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
             );
             let fits = far < most && near > least;
             let (low, high) = if fits { (far, near) } else { (low, 1.1 * most) };
-            let help = format!("write `near {} far {}`", number(low), number(high));
+            let help = format!("write `{} {}` and `{} {}`", words("near"), number(low), words("far"), number(high));
             (message, help, "near", vec![("near", number(low)), ("far", number(high))])
         }
         (_, Some(far)) if far < least => {
             let message = format!("the `far` distance {} cuts away {all}", number(far));
-            let help = format!("write `far {}`, or remove `far`", number(1.1 * most));
+            let word = words("far");
+            let help = format!("write `{word} {}`, or remove `{word}`", number(1.1 * most));
             (message, help, "far", vec![("far", number(1.1 * most))])
         }
         (Some(near), _) if near > most => {
             let message = format!("the `near` distance {} cuts away {all}", number(near));
-            let help = format!("write `near {}`, or remove `near`", number(low));
+            let word = words("near");
+            let help = format!("write `{word} {}`, or remove `{word}`", number(low));
             (message, help, "near", vec![("near", number(low))])
         }
         _ => {
             let message = format!("the clip distances of the camera cut away {all}");
-            (message, "remove `near` and `far`".to_string(), "near", Vec::new())
+            (message, format!("remove `{}` and `{}`", words("near"), words("far")), "near", Vec::new())
         }
     };
     let objects = match least == most {
@@ -89,5 +98,10 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
         .help(help);
     let diagnostic =
         edits.into_iter().fold(diagnostic, |diagnostic, (field, text)| diagnostic.fix_at(place(field), text));
-    vec![Finding::from(scene_probe.at_value(diagnostic, span, &[field, "far"])).affecting_whole_picture(true)]
+    let written = scene_probe.model_format().and_then(|_| super::written::place_of_word(scene_probe, words(field)));
+    let diagnostic = match written {
+        Some(place) => diagnostic.at(place),
+        None => scene_probe.at_value(diagnostic, span, &[field, "far"]),
+    };
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }

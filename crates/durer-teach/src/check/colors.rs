@@ -338,7 +338,9 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     };
     let beyond = all_colors(scene_probe).into_iter().filter(|field| field.color.max_element() > field.most);
     for ColorField { color, block, fields, .. } in beyond.take(MAX_FINDINGS) {
-        say(color, scene_probe.field_span(block, &fields), Some(block));
+        let written =
+            scene_probe.model_format().and_then(|_| super::written::place_of_color(scene_probe, block, color));
+        say(color, written.or_else(|| scene_probe.field_span(block, &fields)), Some(block));
     }
     let background = &scene_probe.input.scene.background;
     for (color, fields) in

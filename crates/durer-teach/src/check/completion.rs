@@ -9,7 +9,7 @@ use durer_scene::camera::Projection;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Material;
+use durer_scene::scene::{Background, Material};
 
 /// Adds an effect, help or edits to a finding, based on the compiled scene.
 pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
@@ -33,7 +33,18 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 finding.diagnostic.help.get_or_insert("for white light, write `color 1 1 1`".into());
             }
         }
-        "sun-below" => finding.affects_whole_picture = is_only_light(scene_probe),
+        "sun-below" => {
+            finding.affects_whole_picture = is_only_light(scene_probe);
+            if let Some(help) =
+                sun_help(&scene_probe.input.scene.background).filter(|_| scene_probe.model_format().is_none())
+            {
+                finding.diagnostic.help = Some(help);
+            }
+            let fields = ["sun", "timeZone", "time", "sunAltitude"];
+            if let Some(value) = finding.diagnostic.span.and_then(|span| scene_probe.field_span(span, &fields)) {
+                finding.diagnostic.span = Some(value);
+            }
+        }
         // The reader of environments reports a black one.
         "bad-file" if finding.diagnostic.message.ends_with("is black: it emits no light") => {
             finding.diagnostic.code = "black-sky";
@@ -67,6 +78,32 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
         "no-material" => no_material(scene_probe, finding),
         "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
         _ => {}
+    }
+}
+
+/// Difference in hours between a time zone and the mean solar time of a place above which the time
+/// zone is wrong.
+const MAX_ZONE_DIFFERENCE: f32 = 4.0;
+
+/// Returns the help about a sun below the horizon if the time zone is missing or wrong, or if the
+/// direction may be that in which the light travels.
+fn sun_help(background: &Background) -> Option<String> {
+    if let Some(sun) = background.sun {
+        return Some(format!("`sun` is the direction to the sun: write `sun {}`", vector(-sun)));
+    }
+    let longitude = background.longitude.filter(|_| background.time.is_some())?;
+    let zone = (longitude / 15.0).round();
+    let local = Background { time_zone: Some(zone), ..background.clone() };
+    local.sun().filter(|way| way.y > 0.0)?;
+    match background.time_zone {
+        None => Some(format!(
+            "the `time` is taken as UTC because there is no `timeZone`: if it is local time, write `timeZone {zone}`, \
+             which fits the longitude"
+        )),
+        Some(written) => (written - zone)
+            .abs()
+            .gt(&MAX_ZONE_DIFFERENCE)
+            .then(|| format!("`timeZone {written}` does not fit the longitude: try `timeZone {zone}`")),
     }
 }
 

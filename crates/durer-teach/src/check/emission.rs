@@ -4,6 +4,7 @@ use super::brightness::brightest;
 use super::finding::vector;
 use super::lines::lines;
 use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::Material;
 use durer_scene::math::Color;
@@ -26,6 +27,21 @@ pub(super) fn dim_surfaces(scene_probe: &SceneProbe) -> Option<f32> {
     let [lamps, others] = [lamps, others].map(|part| part.into_iter().map(|(_, color)| color).collect::<Vec<Color>>());
     let most = brightest(&others);
     (!lamps.is_empty() && others.len() > lamps.len() && most < DARK && brightest(&lamps) < DIM).then_some(most)
+}
+
+/// Returns true if an object that emits light is visible as more than a dim surface. Such objects
+/// can be too small for the samples that measure the brightness of the picture, like stars.
+pub(super) fn shows_bright_lamp(scene_probe: &SceneProbe) -> bool {
+    let world = scene_probe.world();
+    let is_bright = |(number, _): (u32, bool)| {
+        let radiance = match world.materials().get(world.objects()[number as usize].material as usize) {
+            Some(Material::Phong(phong)) => phong.emission.as_ref().map_or(Color::ZERO, |emission| emission.radiance),
+            _ => Color::ZERO,
+        };
+        let is_visible = scene_probe.visibilities()[number as usize] == Visibility::Visible;
+        is_visible && scene_probe.input.exposure * radiance.max_element() > DIM
+    };
+    super::area_lights::emissive_objects(scene_probe).into_iter().any(is_bright)
 }
 
 /// Returns the material with the strongest emission and its radiance, if it is far brighter than

@@ -30,6 +30,9 @@ const MAX_WHITE_SURFACES: f32 = 0.8;
 const MAX_LOW_EXPOSURE: f32 = 0.25;
 const MIN_AMPLE: f32 = 0.1;
 
+/// Brightness of the background above which dark objects in front of it may be silhouettes.
+const MIN_BRIGHT_BACKGROUND: f32 = 0.5;
+
 /// Converts a ratio of luminances to stops.
 fn stops_of(factor: f32) -> f32 {
     fp::ln(factor) / std::f32::consts::LN_2
@@ -188,8 +191,13 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.hits().next().is_none() || most > 0.06 || lights.is_empty() {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::warning(format!("the brightest value in the picture is only {}", number(most)))
-        .effect("everything visible is black, or nearly black")
+    // Silhouettes before a bright background may be intentional.
+    let behind = scene_probe.probes.iter().filter(|probe| probe.hit.is_none());
+    let behind = behind.map(|probe| probe.color.max_element()).fold(0.0, f32::max);
+    let severity = if behind > MIN_BRIGHT_BACKGROUND { Severity::Note } else { Severity::Warning };
+    let message = format!("the brightest visible surface has a value of only {}", number(most));
+    let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
+        .effect("all visible surfaces are black, or nearly black")
         .help(format!("use about {} times as much light", number(0.8 / most.max(1e-4))));
     let diagnostic = match span(scene_probe, 0) {
         Some(span) => scene_probe.at_value(diagnostic, span, &["color"]),
@@ -202,7 +210,7 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
 fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
     let is_dark = scene_probe.is_dark();
     let lit = super::emission::dim_surfaces(scene_probe).filter(|_| !is_dark);
-    if !is_dark && lit.is_none() {
+    if !is_dark && lit.is_none() || is_dark && super::emission::shows_bright_lamp(scene_probe) {
         return Vec::new();
     }
     let most = lit.unwrap_or_else(|| brightest(scene_probe.exposed_colors()));

@@ -14,6 +14,8 @@ use durer_scene::scene::{MatrixOp, Object, ObjectKind};
 
 /// Minimum size, in pixels, of a recognisable object.
 const MIN_PIXELS: f32 = 6.0;
+/// Minimum fraction of the picture's larger side that all objects together are meant to span.
+const MIN_SHARE: f32 = 0.04;
 /// Ratios to the typical size above which an object is out of scale, one for harmless objects and
 /// one for objects that spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
@@ -40,13 +42,13 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
     let empty = scene_probe.hits().next().is_none();
     // A very wide field of view is meant to show a large area, not a few small objects in the
     // centre.
-    let share = match scene_probe.world().camera() {
+    let share: f32 = match scene_probe.world().camera() {
         Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
         Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
         Camera::Orthographic(_) => 0.12,
         _ => 0.0,
     };
-    let fewest = (share * scene_probe.larger_side()).max(MIN_PIXELS);
+    let fewest = (share.max(MIN_SHARE) * scene_probe.larger_side()).max(MIN_PIXELS);
     if size >= fewest || !empty && !scene_probe.visibilities().contains(&Visibility::Visible) {
         return Vec::new();
     }

@@ -62,7 +62,10 @@ pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Findin
 
 /// Formats a vector in the way scene files write it.
 pub(super) fn vector(v: Vec3) -> String {
-    format!("{} {} {}", number(v.x), number(v.y), number(v.z))
+    // Components that are tiny next to the others are rounding errors.
+    let least = 1e-6 * v.abs().max_element();
+    let [x, y, z] = v.to_array().map(|part| if part.abs() < least { 0.0 } else { part }).map(number);
+    format!("{x} {y} {z}")
 }
 
 /// Formats a ratio as a percentage.

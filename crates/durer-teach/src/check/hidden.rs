@@ -67,9 +67,13 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
         .label(format!("covers {} of the picture", percent(covered, scene_probe.probes.len())))
         .effect(format!("{} behind it are invisible", counted(hidden, "object", "objects")))
         .help(help);
-    let diagnostic = match turned {
-        Some((place, text)) => diagnostic.fix(place, text),
-        None => diagnostic,
+    let moved = moved_behind(scene_probe, front).filter(|_| !backwards && !behind);
+    let diagnostic = match (moved, turned) {
+        (Some((place, words)), _) => {
+            diagnostic.at(place).label("").related(scene_probe.object_span(front), "the plane").help(words)
+        }
+        (None, Some((place, text))) => diagnostic.fix(place, text),
+        (None, None) => diagnostic,
     };
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
@@ -185,11 +189,22 @@ pub(super) fn below_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
             false => "only the plane and the background are visible",
         })
         .help("check the `offset` of the plane, which is at p · normal = offset, or the height of the objects");
-    let diagnostic = match negated_offset(scene_probe, front) {
-        Some((place, text)) => diagnostic.fix(place, text),
-        None => diagnostic,
+    let diagnostic = match (moved_behind(scene_probe, front).filter(|_| !lid), negated_offset(scene_probe, front)) {
+        (Some((place, words)), _) => {
+            diagnostic.at(place).related(scene_probe.object_span(front), "the plane").help(words)
+        }
+        (None, Some((place, text))) => diagnostic.fix(place, text),
+        (None, None) => diagnostic,
     };
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+}
+
+/// Returns the span of a transform that moves an object to the far side of a plane, and a sentence
+/// about the transform.
+fn moved_behind(scene_probe: &SceneProbe, plane: u32) -> Option<(Span, String)> {
+    let (n, d) = world_plane(scene_probe, plane)?;
+    let eye = scene_probe.world().camera().pose().center.dot(n) - d;
+    super::transforms::moved_out_of_view(scene_probe, &|place| (place.dot(n) - d) * eye > 0.0)
 }
 
 /// Returns the plane that separates the camera from an object. The plane hides the object, whatever

@@ -131,13 +131,23 @@ fn turned_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let number = number as u32;
         let is_simple = scene_probe.model_format().is_none() && world.objects().len() <= FEW_OBJECTS;
-        let severity = if is_simple { Severity::Warning } else { Severity::Note };
+        let is_empty = scene_probe.hits().next().is_none();
+        let severity = if is_simple || is_empty { Severity::Warning } else { Severity::Note };
         let message = format!("the {} shows the camera only its back", scene_probe.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scene_probe.object_span(number))
             .effect("the object is invisible, because `backs hidden` hides the backs of its material")
             .help("exchange its edges or two of its vertices, negate its normal, or remove `backs hidden`");
-        Some(Finding::from(diagnostic))
+        let diagnostic = match scene_probe.model_format() {
+            None => diagnostic,
+            Some(format) => diagnostic
+                .effect("the object is invisible, because its material is not double-sided and hides the backs")
+                .help(match format.name {
+                    "glTF" => "reverse the order of the vertices of its triangles, or set `doubleSided` to true",
+                    _ => "reverse the order of the vertices of its triangles, or give it a double-sided material",
+                }),
+        };
+        Some(Finding::from(diagnostic).affecting_whole_picture(is_empty))
     };
     turned.filter_map(say).take(MAX_FINDINGS).collect()
 }

@@ -7,6 +7,7 @@ use super::scene_probe::SceneProbe;
 use super::shapes::plane;
 use super::visibility::Visibility;
 use durer_diag::Diagnostic;
+use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection, ThinLensCamera};
 use durer_scene::math::{Aabb, Vec3, fp};
 
@@ -22,18 +23,23 @@ const USUAL_MAX_APERTURE: f32 = 0.12;
 /// Ratio of an object's distance to the focus distance above which the lens focuses nowhere near
 /// the object.
 const FAR_FROM_FOCUS: f32 = 2.0;
+/// Ratio of the focus distance to an object's distance above which the focus is out of its reach.
+const OUT_OF_REACH: f32 = 10.0;
+/// Usual f-numbers. An aperture with one of these values was probably meant as an f-number.
+const F_NUMBERS: [f32; 10] = [1.4, 1.8, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 22.0];
 /// Eye separation above which the two images do not fuse, as a fraction of the distance.
 const MAX_SEPARATION: f32 = 0.5;
 
-/// Returns the diameter of the blur disc of each visible point, as a fraction of the picture's
-/// larger side, followed by the depth of the point.
-fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
+/// Returns the diameter of the blur disc of each visible point on some objects, as a fraction of
+/// the picture's larger side, followed by the depth of the point.
+fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera, counts: impl Fn(&Object) -> bool) -> Vec<(f32, f32)> {
     let forward = scene_probe.world().camera_frame().forward;
     let depth = |(probe, hit): (&Probe, &ProbeHit)| hit.t * probe.ray.dir.dot(forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let width = 2.0 * (sine / cosine) as f32;
     let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);
-    scene_probe.hits().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
+    let hits = scene_probe.hits().filter(|(_, hit)| counts(&scene_probe.world().objects()[hit.object as usize]));
+    hits.map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
 }
 
 /// Reports a pinhole that is so large that everything visible is blurred.
@@ -58,26 +64,48 @@ fn large_hole(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// Reports a lens that blurs everything visible.
 pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
-    let all = blurs(scene_probe, camera);
-    let depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
-    let least = all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
-    if !wide_aperture(scene_probe).is_empty() || depths.is_empty() || least < MAX_BLUR {
+    let all = blurs(scene_probe, camera, |_| true);
+    if !wide_aperture(scene_probe).is_empty() || all.is_empty() {
         return Vec::new();
     }
-    let mut sorted = depths;
+    let sharpest = |all: &[(f32, f32)]| all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
+    let (least, subject, what, all) = match sharpest(&all) {
+        least if least >= MAX_BLUR => (least, "nothing", "everything visible", all),
+        // A plane extends to the horizon, so a part of it is in focus at almost any distance.
+        _ => {
+            let own = blurs(scene_probe, camera, |object| object.bounds().is_some());
+            let is_far = |(_, z): &(f32, f32)| camera.focus_distance > OUT_OF_REACH * z;
+            let least = sharpest(&own);
+            if own.is_empty() || least < MAX_SHARP_BLUR || !own.iter().all(is_far) {
+                return Vec::new();
+            }
+            (least, "no object", "each visible object except planes", own)
+        }
+    };
+    let mut sorted: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     sorted.sort_by(f32::total_cmp);
+    let (nearest, farthest) = (sorted[0], sorted[sorted.len() - 1]);
     let middle = number(sorted[sorted.len() / 2]);
-    let message = format!(
-        "nothing is in focus: the lens focuses at a distance of {}, and everything visible is at least {} away",
-        number(camera.focus_distance),
-        number(sorted[0])
-    );
+    let away = match camera.focus_distance > farthest {
+        true => format!("at most {} away", number(farthest)),
+        false => format!("at least {} away", number(nearest)),
+    };
+    let focus = number(camera.focus_distance);
+    let message = format!("{subject} is in focus: the lens focuses at a distance of {focus}, and {what} is {away}");
+    let metres = camera.focus_distance / 1000.0;
+    let help = match (0.8 * nearest..1.25 * farthest).contains(&metres) {
+        true => format!(
+            "`focusDistance` is in scene units; if this value is in millimetres and the scene in metres, write \
+             `focusDistance {}`",
+            number(metres)
+        ),
+        false => format!(
+            "write `focusDistance {middle}`, the distance of most objects, or use a smaller `aperture`, which blurs less"
+        ),
+    };
     let diagnostic = Diagnostic::warning(message)
-        .effect(format!("every point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
-        .help(format!(
-            "write `focusDistance {middle}`, the distance of most objects, or use a smaller `aperture`, \
-             which blurs less"
-        ));
+        .effect(format!("every such point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
+        .help(help);
     let span = scene_probe.input.scene.camera_span;
     vec![
         Finding::from(scene_probe.at_value(diagnostic, span, &["focusDistance", "aperture"]))
@@ -88,7 +116,7 @@ pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// Reports an aperture that is larger than that of any lens and blurs everything except one plane.
 pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scene_probe.world().camera() else { return large_hole(scene_probe) };
-    let all = blurs(scene_probe, camera);
+    let all = blurs(scene_probe, camera, |_| true);
     let sharp = all.iter().filter(|(blur, _)| *blur < MAX_SHARP_BLUR).count();
     // If the aperture fits the distance of most objects, the focus distance is wrong instead.
     let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
@@ -98,7 +126,8 @@ pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
     let near_focus =
         |z: &f32| *z > camera.focus_distance / FAR_FROM_FOCUS && *z < camera.focus_distance * FAR_FROM_FOCUS;
     let off = !depths.iter().any(near_focus);
-    let wide = camera.aperture >= MAX_APERTURE * camera.focus_distance;
+    let f_number = F_NUMBERS.contains(&camera.aperture) && camera.aperture > USUAL_MAX_APERTURE * camera.focus_distance;
+    let wide = f_number || camera.aperture >= MAX_APERTURE * camera.focus_distance;
     if all.is_empty() || !wide || sharp * 10 > all.len() || fits || off {
         return Vec::new();
     }

@@ -182,7 +182,7 @@ fn main_lights(scene_probe: &SceneProbe) -> Vec<usize> {
 /// Reports lights that reach few visible surfaces because most of the surfaces face away.
 fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scene_probe);
-    let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
+    let (mut all, mut reached, mut away, mut turned, mut grazed) = (0, 0, 0, 0, 0);
     let is_main = |lit: &&LightContribution| working.contains(&lit.light);
     let bright = |lit: &LightContribution| {
         is_main(&lit) && lit.cosine > GRAZING && lit.contribution.abs().max_element() > VISIBLE
@@ -196,6 +196,7 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
         reached += usize::from(hit.lights.iter().any(&bright));
         let faces_away = hit.lights.iter().filter(is_main).all(|lit| lit.cosine <= GRAZING);
         away += usize::from(faces_away);
+        turned += usize::from(hit.lights.iter().filter(is_main).all(|lit| lit.cosine <= 0.0));
         grazed += usize::from(faces_away && hit.lights.iter().filter(is_main).any(is_grazing));
     }
     // If surfaces are black or in shadow, the direction of the lights is not the cause.
@@ -211,22 +212,32 @@ fn mostly_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
             .collect();
     }
     let which = if working.len() == 1 { "this light" } else { "the lights" };
-    let message = format!("{} of the visible surfaces face away from {which}", percent(away, all));
+    let low = turned * 2 < away;
+    let message = match low {
+        true => format!(
+            "{} of the visible surfaces get light from {which} only at grazing angles",
+            percent(away - turned, all)
+        ),
+        false => format!("{} of the visible surfaces face away from {which}", percent(turned, all)),
+    };
     let mut diagnostic = Diagnostic::warning(message)
         .effect(match scene_probe.world().ambient().max_element() > VISIBLE {
             true => "most of the visible surface area shows only ambient light, flat and dark",
             false => "most of the visible surface area is black",
         })
-        .help(
-            "change the `direction` in which the light travels, or its `position`: the light is behind the visible \
-             surfaces",
-        );
+        .help(match low {
+            true => "change the `direction` in which the light travels, or its `position`: N · L is nearly 0 there",
+            false => {
+                "change the `direction` in which the light travels, or its `position`: the light is behind the visible \
+                 surfaces"
+            }
+        });
     diagnostic = scene_probe.at_value(diagnostic, span, &["direction", "position"]);
     // If all lights are behind the surfaces, each `direction` probably points towards the light
     // source.
     for &light in &working {
         let Some(light) = description(scene_probe, light) else { continue };
-        if let (None, Some(direction)) = (light.value.position(), light.value.direction()) {
+        if let (None, Some(direction), false) = (light.value.position(), light.value.direction(), low) {
             diagnostic = diagnostic.fix_at(scene_probe.field_span(light.span, &["direction"]), vector(-direction));
         }
     }

@@ -71,7 +71,13 @@ pub(super) fn open_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("the mesh `{}` is glass, but {what}", mesh.name.path))
             .at(glass.span)
             .effect("a ray that enters the glass through a hole never leaves it, so the refraction is wrong")
-            .help(format!("close the mesh; one such edge goes from {p} to {q}"));
+            .help(match scene_probe.model_format() {
+                Some(_) => format!("close the mesh; one such edge goes from {p} to {q}"),
+                None => format!(
+                    "close the mesh, or write `walls thin` in its material if it is a pane; one such edge goes from {p} \
+                     to {q}"
+                ),
+            });
         findings.push(Finding::from(diagnostic));
     }
     findings
@@ -271,7 +277,10 @@ pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
             });
         findings.push(Finding::from(diagnostic).affecting_whole_picture(most));
     }
-    findings.extend(models_inside_out(scene_probe));
+    // A mesh file that is read as a scene is both a file and a model.
+    let known: Vec<u32> = findings.iter().filter_map(|found| Some(found.diagnostic.span?.file)).collect();
+    let is_new = |found: &Finding| found.diagnostic.span.is_none_or(|span| !known.contains(&span.file));
+    findings.extend(models_inside_out(scene_probe).into_iter().filter(is_new));
     findings
 }
 

@@ -46,6 +46,7 @@ mod probes;
 mod quadrics;
 mod quirks;
 mod repair;
+mod room;
 mod scene_probe;
 mod shapes;
 mod solid;
@@ -58,6 +59,7 @@ mod transforms;
 mod verdict;
 mod view;
 mod visibility;
+mod written;
 
 use durer_diag::{Diagnostic, Diagnostics, Severity};
 pub use finding::Finding;
@@ -87,6 +89,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
             "lamp-turned",
             "too-dark",
             "too-bright",
+            "mostly-black",
+            "no-emitter",
         ],
     ),
     ("ALPHA_CUTOFF", &["not-there"]),
@@ -138,7 +142,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("no-surface", &["far-origin", "too-small", "tiny", "out-of-scale", "all-missed"]),
     ("lamp-turned", &["too-dark", "lamp-blocked"]),
     ("lamp-blocked", &["unseen"]),
-    ("light-near", &["too-dark", "too-bright", "light-faint"]),
+    ("light-near", &["too-dark", "too-bright", "light-faint", "light-behind"]),
     ("unused-define", &["unused-material", "no-objects"]),
     ("plane-normal", &["plane-through", "too-bright"]),
     ("same-parts", &["pattern-scale"]),
@@ -163,6 +167,9 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
             None => findings.extend(coded),
         }
     }
+    // The reader of a model knows why there are no objects.
+    let mut is_known = false;
+    findings.retain(|finding| finding.diagnostic.code != "no-objects" || !std::mem::replace(&mut is_known, true));
     // Drop findings that only describe the picture if another finding explains it.
     if findings.iter().any(|finding| finding.affects_whole_picture && !finding.only_describes) {
         findings.retain(|finding| !finding.only_describes);

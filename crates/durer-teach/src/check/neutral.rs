@@ -26,7 +26,6 @@ const HELP: &[(&str, &str)] = &[
     ("light-behind", "turn the light towards the scene, or move the light"),
     ("light-faint", "increase the intensity of the light"),
     ("inner-angle", "make the inner cone narrower than the outer cone"),
-    ("color-range", "use colours from 0 to 1"),
     ("not-there", "increase the opacity, the fraction of the surface that is present"),
     ("black-material", "increase the base colour, the fraction of light that the material reflects"),
     ("negative-color", "use colours from 0 to 1"),

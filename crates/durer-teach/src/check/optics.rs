@@ -14,6 +14,8 @@ use durer_scene::spectrum::ColorMode;
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const MAX_MEAN_FREE_PATH: f32 = 30.0;
+/// The same for the mean free path of the colour channel that is scattered most.
+const MAX_LEAST_MEAN_FREE_PATH: f32 = 3.0;
 /// Minimum deviation of the index of refraction from 1 for which light is visibly bent.
 const MIN_IOR_DIFFERENCE: f32 = 1e-3;
 
@@ -44,14 +46,16 @@ pub(super) fn wide_scatter(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |(index, material, m): Used| {
         let thick = thickness(scene_probe, index)?;
         let way = m.subsurface_radius * m.subsurface_radius_scale.max_element();
-        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || way <= MAX_MEAN_FREE_PATH * thick {
+        let least = m.subsurface_radius * m.subsurface_radius_scale.min_element();
+        let is_wide = way > MAX_MEAN_FREE_PATH * thick || least > MAX_LEAST_MEAN_FREE_PATH * thick;
+        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || !is_wide {
             return None;
         }
         let (radius, less) = (number(m.subsurface_radius), number(0.1 * thick));
         let message = format!("light travels {radius} in material {index} before it is scattered");
         let diagnostic = Diagnostic::warning(message)
             .effect(format!(
-                "objects with this material are only {} thick, so light passes straight through and the colour is not \
+                "objects with this material are only {} thick, so most light passes straight through and the colour is hardly \
                  visible",
                 number(thick)
             ))

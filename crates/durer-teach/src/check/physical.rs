@@ -82,6 +82,19 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = scene_probe.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
         return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
+    // A material with the colour of an emission, but without its luminance, emits nothing.
+    let colored = scene_probe.input.scene.materials.iter().enumerate().find_map(|(number, material)| {
+        let is_layered = matches!(&material.value, Material::Principled(_)) && format.is_none();
+        let fields = ["emissionColor", "emissionSpectrum", "emissionTexture"];
+        is_layered.then(|| scene_probe.field_span(material.span, &fields)).flatten().map(|place| (number, place))
+    });
+    if let Some((number, place)) = colored {
+        let message =
+            format!("nothing emits light: material {number} has a colour of emission, but no `emissionLuminance`");
+        let diagnostic = Diagnostic::warning(message).effect("the picture is black").at(place);
+        let help = "add `emissionLuminance`, which is 0 by default, for example `emissionLuminance 10`";
+        return vec![Finding::from(diagnostic.help(help)).affecting_whole_picture(true)];
+    }
     let ambient = match world.ambient() == Color::ZERO {
         true => "",
         false => "; `ambientLight` has no effect on paths",

@@ -6,7 +6,7 @@ use super::scene_probe::SceneProbe;
 use super::{
     area_lights, attenuation, beams, clipping, colors, exposure, extent, facing, fog, hidden, integrator, invisible,
     layers, lens, lights, mesh, names, numbers, objects, optics, pattern_border, patterns, physical, quadrics, quirks,
-    solid, strays, textures, view,
+    room, solid, strays, textures, view,
 };
 
 /// A kind of finding, with its stable code and the function that searches for it. Each is a row of
@@ -49,6 +49,7 @@ checks! {
     "open-solid": "a part of a solid that is not closed", reported;
     "no-objects": "a scene without objects", view::no_objects;
     "repeated": "a section or field that appears twice", reported;
+    "bad-place": "a statement in a place where it has no effect", reported;
     // The camera.
     "far-origin": "a scene so far from the origin that single precision cannot resolve its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program starts shadow rays", lens::below_epsilon;
@@ -65,7 +66,7 @@ checks! {
     "wide-aperture": "an aperture or a pinhole that is too large", lens::wide_aperture;
     "out-of-focus": "a lens that focuses where there is nothing", lens::out_of_focus;
     "eyes-apart": "eyes that are too far apart", lens::eyes_apart;
-    "hidden-behind": "an object that hides all others, or most of the picture", hidden::hidden_behind;
+    "hidden-behind": "an object that hides all others, or most of the picture", room::hidden_behind;
     "below-plane": "a plane between the camera and all other objects", hidden::below_plane;
     "plane-through": "a plane that passes through the middle of most objects", view::plane_through;
     "upside-down": "a camera whose `up` points into the ground", view::upside_down;

@@ -206,15 +206,22 @@ pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
     if turned && angle < 60.0 {
         return Vec::new();
     }
-    if matches!(world.camera(), Camera::Projective(_)) {
-        let help = match angle > 90.0 {
-            true => "the matrix looks away from the scene: check the signs of its rows",
-            false => "check the matrix of the camera",
+    if let Camera::Projective(camera) = world.camera() {
+        let axis = camera.principal_point();
+        let is_off = axis.min_element() < 0.0 || axis.x > camera.width || axis.y > camera.height;
+        let help = match is_off {
+            _ if angle > 90.0 => "the matrix looks away from the scene: check the signs of its rows".to_string(),
+            true => format!(
+                "the matrix maps the camera's axis to the pixel {} {}, outside the picture: check the signs of its rows",
+                number(axis.x),
+                number(axis.y)
+            ),
+            false => "check the matrix of the camera".to_string(),
         };
         return vec![Finding::from(diagnostic.help(help).at(span)).affecting_whole_picture(true)];
     }
     diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off the viewing direction");
-    let moved = super::transforms::moved_out_of_view(scene_probe);
+    let moved = super::transforms::moved_out_of_view(scene_probe, &|_| true);
     let first = moved.as_ref().map_or_else(|| nearest(scene_probe), |(_, words)| words.clone() + "; or ");
     let mut help = format!("{first}turn the camera: `direction {}`", vector(to));
     let as_point = pose.direction - pose.center;
@@ -304,6 +311,10 @@ pub(super) fn empty_view(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     // Probes can miss objects that are visible.
     let hit = scene_probe.visibilities().contains(&Visibility::Visible);
+    // The check `unseen` reports objects that show the camera only hidden backs.
+    if scene_probe.visibilities().contains(&Visibility::TurnedAway) {
+        return Vec::new();
+    }
     let Some(bounds) = target(scene_probe).filter(|bounds| !hit && is_in_view(scene_probe, bounds.center())) else {
         return Vec::new();
     };

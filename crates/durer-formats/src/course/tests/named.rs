@@ -152,4 +152,11 @@ fn included_file_replaces_its_include() {
         assert!(scene.is_none(), "{text}");
         assert!(found[0].starts_with(expected), "{text}: {found:?}");
     }
+    // A scene that includes itself is read only once, so nothing in it is repeated.
+    let text = format!("{HEAD}Group {{ include loop.txt }}");
+    std::fs::write(files.path().join("s.txt"), &text).unwrap();
+    std::fs::write(files.path().join("loop.txt"), "include s.txt").unwrap();
+    let (_, found) = read_in(files.path(), "s.txt", &text);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("loop.txt:1:1 error `s.txt` includes itself"), "{found:?}");
 }
