@@ -2,19 +2,17 @@
 //! material.
 //!
 //! Disney's diffuse base ignores the Fresnel loss at the boundary and reflects more light when it
-//! is rougher; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and
-//! weights that give the same mean reflectance.
+//! is rougher. Layers of `openPbr` conserve energy, so readers choose colours that give the same
+//! mean reflectance.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015.
 
-use durer_scene::bsdf::albedo::{self, single_means};
-use durer_scene::math::{Color, fp};
-use std::f32::consts::PI;
-
-/// Roughness at which Dürer's fuzz is brightest at grazing angles, where Disney's sheen is
-/// brightest too.
-pub(super) const FUZZ_ROUGHNESS: f32 = 0.2;
+use durer_scene::bsdf::albedo::single_means;
+use durer_scene::bsdf::fresnel::ior_of_reflectance;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::{Layering, Walls};
+use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
 
 /// Number of integration steps for each cosine, and for the azimuth between the two directions.
 const STEPS: usize = 16;
@@ -34,11 +32,6 @@ impl DirectionPair {
         let [out, into] = self.cosines.map(schlick);
         let retro = 2.0 * roughness * self.half * self.half;
         (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
-    }
-
-    /// Returns the value of white sheen, relative to a white Lambertian surface.
-    fn sheen(&self) -> f32 {
-        PI * schlick(self.half)
     }
 }
 
@@ -64,16 +57,6 @@ fn means(value: impl Fn(&DirectionPair) -> f32) -> f32 {
 /// Returns the reflectance of a white diffuse base of Disney's material.
 pub(super) fn diffuse_albedo(roughness: f32) -> f32 {
     means(|pair| pair.diffuse(roughness))
-}
-
-/// Returns the weight at which Dürer's fuzz has the same reflectance as Disney's sheen of strength
-/// 1.
-pub(super) fn fuzz_weight_of_sheen() -> f32 {
-    let at = |i: usize| {
-        let cosine = (i as f32 + 0.5) / STEPS as f32;
-        2.0 * cosine * albedo::fuzz(cosine, FUZZ_ROUGHNESS)
-    };
-    means(DirectionPair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
 }
 
 /// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and comes back
@@ -111,20 +94,48 @@ impl DiffuseConverter {
     }
 }
 
+/// Returns a material whose layers conserve energy and whose mean reflectance is near that of
+/// Disney's material `m`, for formats that lack Disney's material. Sheen and flatness are lost.
+pub(super) fn as_layers(m: &PrincipledMaterial) -> PrincipledMaterial {
+    let mut layers = PrincipledMaterial { layering: Layering::OpenPbr, fuzz_weight: 0.0, ..m.clone() };
+    let luminance = m.base_color.dot(LUMINANCE).max(1e-6);
+    let tint = Vec3::ONE.lerp(m.base_color / luminance, m.specular_tint);
+    layers.specular_color = tint.clamp(Vec3::ZERO, Vec3::ONE);
+    // Disney's coat has a quarter of the weight.
+    layers.coat_weight = 0.25 * m.coat_weight;
+    if m.walls == Walls::Thin {
+        layers.base_color = diffuse_albedo(m.specular_roughness) * m.base_color;
+        layers.subsurface_color = layers.base_color;
+        // Disney's sheet has a single surface.
+        let root = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
+        layers.specular_ior = ior_of_reflectance(root * root / (2.0 - root * root));
+    } else if m.base_metalness_texture.is_none() {
+        let base = DiffuseConverter::new(m.specular_ior, m.specular_roughness).base(m.base_color);
+        layers.base_color = m.base_color.lerp(base, 1.0 - m.base_metalness);
+    }
+    layers
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn matte_base_and_sheen_match_reference_means() {
+    fn matte_base_matches_reference_means() {
         // The cosine-weighted mean of (1 - cos)^5 is 1/21, and the two directions are independent.
         let expected = (1.0_f32 - 0.5 / 21.0) * (1.0 - 0.5 / 21.0);
         assert!((diffuse_albedo(0.0) - expected).abs() < 1e-3, "{}", diffuse_albedo(0.0));
         // Mitsuba 3.9.1 yields 0.7456 for a base of 0.7 at roughness 1, measured with 200,000 pairs
         // of directions.
         assert!((diffuse_albedo(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", diffuse_albedo(1.0));
-        // Mitsuba yields 0.01154 for white sheen alone.
-        assert!((means(DirectionPair::sheen) - 0.01154).abs() < 5e-4, "{}", means(DirectionPair::sheen));
-        assert!((0.0..1.0).contains(&fuzz_weight_of_sheen()), "{}", fuzz_weight_of_sheen());
+    }
+
+    #[test]
+    fn pane_reflects_like_one_surface() {
+        let pane = PrincipledMaterial { walls: Walls::Thin, ..PrincipledMaterial::default() };
+        let index = as_layers(&pane).specular_ior;
+        let root = (index - 1.0) / (index + 1.0);
+        let r = root * root;
+        assert!((2.0 * r / (1.0 + r) - 0.04).abs() < 1e-5, "{r}");
     }
 }

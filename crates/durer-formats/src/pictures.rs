@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// itself: for the new picture and its 8-bit data, both raw and encoded.
 pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
+/// Largest number of texels of a picture that [`Pictures::refined`] makes.
+const MOST_REFINED: u64 = 1 << 22;
+
 /// Reader for the pictures that a scene names, which also converts pictures and reports errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
@@ -65,21 +68,19 @@ impl Pictures<'_> {
         }
     }
 
-    /// Returns a file as an 8-bit picture, together with a factor for its values. If a
-    /// floating-point picture has values above 1, it is divided by its maximum, and the factor is
-    /// that maximum.
-    pub fn eight_bits_scaled(&self, name: &str, at: Span) -> Option<(PictureBytes, f32)> {
+    /// Returns a file with its own depth, together with a factor for its values. A floating-point
+    /// picture is divided by its maximum if that is above 1 and `scaled` is true, and otherwise
+    /// limited to 1. The factor is what it was divided by.
+    pub fn own_depth(&self, name: &str, scaled: bool, at: Span) -> Option<(PictureBytes, f32)> {
         let bytes = self.bytes(name, at)?;
-        if Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
-            let mut image = self.image(name, at)?;
-            let most = image.pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
-            if most > 1.0 && most.is_finite() {
-                image.pixels.iter_mut().for_each(|p| *p /= most);
-                let eight = as_png(image, Transfer::Srgb)?;
-                return Some((PictureBytes::Memory(format!("{name}#of-{most}.png"), eight), most));
-            }
+        if !Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
+            return Some((self.eight_bits(name, at)?, 1.0));
         }
-        Some((self.eight_bits(name, at)?, 1.0))
+        let mut image = self.image(name, at)?;
+        let most = image.pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
+        let factor = if scaled && most.is_finite() { most } else { 1.0 };
+        image.pixels.iter_mut().for_each(|p| *p = (*p / factor).clamp(Color::ZERO, Color::ONE));
+        Some((PictureBytes::Memory(format!("{name}#of-{factor}.pfm"), as_pfm(image)?), factor))
     }
 
     /// Converts a picture with another transfer function to sRGB if `is_color` is true, and to
@@ -124,6 +125,51 @@ impl Pictures<'_> {
         self.linear(picture, at, decode, |texel| Color::splat(change(texel)))
     }
 
+    /// Version of [`Pictures::changed`] that first interpolates `finer` texels along each side of a
+    /// texel, as far as the picture stays below [`MOST_REFINED`] texels.
+    pub fn refined(
+        &self,
+        picture: &TextureImage,
+        at: Span,
+        decode: fn(u8) -> f32,
+        finer: u32,
+        change: impl Fn(Color) -> f32,
+    ) -> Option<TextureImage> {
+        let (path, image) = self.source(picture, at, decode)?;
+        let texels = u64::from(image.width) * u64::from(image.height);
+        let finer = (1..=finer).rev().find(|n| texels * u64::from(n * n) <= MOST_REFINED).unwrap_or(1);
+        if finer == 1 || picture.mapping.nearest {
+            return self.changed(picture, at, decode, change);
+        }
+        let (width, height) = (image.width * finer, image.height * finer);
+        let mut pixels = Vec::with_capacity((width * height) as usize);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let place = |x: u32| {
+                let x = (x as f32 + 0.5) / finer as f32 - 0.5;
+                (x.floor() as i64, x - x.floor())
+            };
+            let ((i, a), (j, b)) = (place(x), place(y));
+            let [across, down] = picture.mapping.wrap;
+            let texel = |i: i64, j: i64| {
+                let (x, y) = (across.index(i, image.width), down.index(j, image.height));
+                image.get(x, y).unwrap_or_default()
+            };
+            let row = |j: i64| texel(i, j).lerp(texel(i + 1, j), a);
+            pixels.push(Color::splat(change(row(j).lerp(row(j + 1), b)).clamp(0.0, 1.0)));
+        }
+        let bytes = as_pfm(Image::from_pixels(width, height, pixels).ok()?)?;
+        let path = format!("{path}#{}.pfm", &Digest::of(&bytes).to_string()[..12]);
+        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
+    }
+
+    /// Decodes a picture.
+    fn source<'p>(&self, picture: &'p TextureImage, at: Span, decode: fn(u8) -> f32) -> Option<(&'p String, Image)> {
+        Some(match &picture.bytes {
+            PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
+            PictureBytes::Memory(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
+        })
+    }
+
     /// Creates a linear picture by applying `change` to each texel of another picture. `decode` is
     /// the transfer function of that picture.
     pub fn linear(
@@ -133,14 +179,14 @@ impl Pictures<'_> {
         decode: fn(u8) -> f32,
         change: impl Fn(Color) -> Color,
     ) -> Option<TextureImage> {
-        let (path, image) = match &picture.bytes {
-            PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
-            PictureBytes::Memory(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
-        };
+        let (path, image) = self.source(picture, at, decode)?;
         let texel = |p: &Color| change(*p).clamp(Color::ZERO, Color::ONE);
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
-        let bytes = as_png(image, Transfer::Linear)?;
-        let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
+        // Pictures that were not limited to 8 bits stay so.
+        let is_float = matches!(&picture.bytes, PictureBytes::Memory(path, _) if path.ends_with(".pfm"));
+        let bytes = if is_float { as_pfm(image)? } else { as_png(image, Transfer::Linear)? };
+        let kind = if is_float { "pfm" } else { "png" };
+        let path = format!("{path}#{}.{kind}", &Digest::of(&bytes).to_string()[..12]);
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
@@ -225,6 +271,14 @@ pub(super) fn as_png(image: Image, transfer: Transfer) -> Option<Arc<[u8]>> {
     let format = image::format_for("a.png").ok()?;
     let options = WriteOptions { display: transfer.into(), ..WriteOptions::default() };
     format.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
+    Some(bytes.into())
+}
+
+/// Encodes a picture as a PFM picture, which keeps single precision.
+fn as_pfm(image: Image) -> Option<Arc<[u8]>> {
+    let mut bytes = Vec::new();
+    let format = image::format_for("a.pfm").ok()?;
+    format.write(&[Layer::data("", image)], &WriteOptions::default(), &mut bytes).ok()?;
     Some(bytes.into())
 }
 

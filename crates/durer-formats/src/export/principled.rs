@@ -8,7 +8,7 @@ use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::parameters::TEXTURE_FIELDS;
-use durer_scene::material::principled::{Backs, Switch, Walls};
+use durer_scene::material::principled::{Backs, Layering, Switch, Walls};
 use durer_scene::math::Vec3;
 use durer_scene::scene::TextureImage;
 use durer_scene::spectrum::Curve;
@@ -16,14 +16,17 @@ use durer_scene::texture::Channel;
 
 impl Export<'_> {
     pub(super) fn principled(&mut self, m: &PrincipledMaterial, program: &str) -> Surface {
+        let layers = (m.layering == Layering::Disney).then(|| crate::disney::as_layers(m));
         self.report_losses(m, program);
+        let m = layers.as_ref().unwrap_or(m);
         let base_color = m.base_color_texture.as_ref().map(|name| self.picture(name));
         let mut surface = self.layers(m, base_color.clone(), program);
+        let shadows = m.normal_shadowing == Switch::On;
         if let Some(name) = &m.bump_texture {
-            surface = Surface::BumpMapped(Box::new(surface), self.picture(name), m.bump_height);
+            surface = Surface::BumpMapped(Box::new(surface), self.picture(name), m.bump_height, shadows);
         }
         if let Some(name) = &m.normal_texture {
-            surface = Surface::NormalMapped(Box::new(surface), self.picture(name));
+            surface = Surface::NormalMapped(Box::new(surface), self.picture(name), shadows);
         }
         let mask = m.opacity_texture.as_ref().map(|name| {
             let picture = self.picture(name);
@@ -213,6 +216,7 @@ impl Export<'_> {
         let losses = [
             (m.base_diffuse_roughness > 0.0, "rough diffuse surfaces", "a Lambertian surface is written"),
             (m.fuzz_weight > 0.0, "fuzz", "it is left out"),
+            (m.base_flatness > 0.0, "flatness", "the base stays diffuse"),
             (m.thin_film_weight > 0.0, "thin films", "they are left out"),
             (m.disperses(), "dispersion", "one index of refraction is written"),
             (m.backs == Backs::Hidden, "hidden back sides", "they are visible"),

@@ -26,10 +26,10 @@ pub(crate) enum Surface {
     Sides(Box<[Surface; 2]>),
     /// Surface of which only a part is present.
     Masked(Box<Surface>, f32, Option<Mask>),
-    /// Surface with a normal map.
-    NormalMapped(Box<Surface>, TextureImage),
-    /// Surface with a bump map and the height of white.
-    BumpMapped(Box<Surface>, TextureImage, f32),
+    /// Surface with a normal map. The flag is true if its bumps hide light from each other.
+    NormalMapped(Box<Surface>, TextureImage, bool),
+    /// Surface with a bump map, the height of white and the same flag.
+    BumpMapped(Box<Surface>, TextureImage, f32, bool),
 }
 
 /// Surface that light does not cross.

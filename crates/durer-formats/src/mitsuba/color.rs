@@ -9,7 +9,25 @@ use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::spectrum::black_body::planck;
-use durer_scene::spectrum::{SpectrumSource, radiance};
+use durer_scene::spectrum::space::SRGB_FROM_XYZ;
+use durer_scene::spectrum::{SpectrumSource, observer_and_daylight, radiance};
+use glam::DVec3;
+
+/// Returns the colour of a light as [`radiance`] does, but from a sum over all nanometres, which is
+/// exact also for spectra whose slope changes suddenly.
+fn fine_radiance(light: impl Fn(f32) -> f32) -> Color {
+    let sum = |light: &dyn Fn(f32) -> f32| -> DVec3 {
+        let at = |nm: u16| {
+            let [x, y, z, _] = observer_and_daylight(f32::from(nm)).map(f64::from);
+            DVec3::new(x, y, z) * f64::from(light(f32::from(nm)))
+        };
+        (360..=830).map(at).sum()
+    };
+    // In units in which a constant radiance of 1 has the same colour in both sums.
+    let coarse = radiance(|_| 1.0).as_dvec3();
+    let color = SRGB_FROM_XYZ * sum(&light) / (SRGB_FROM_XYZ * sum(&|_| 1.0)) * coarse;
+    if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }
+}
 
 impl Reader<'_> {
     /// Returns the colour of a reflectance, transmittance or absorption, or `None` if the property
@@ -32,7 +50,7 @@ impl Reader<'_> {
             Value::Rgb(color) => Some(*color),
             Value::Spectrum(curve) => {
                 let curve = SpectrumSource::Curve(curve.clone());
-                Some(radiance(|nm| curve.at(nm)))
+                Some(fine_radiance(|nm| curve.at(nm)))
             }
             _ => self.spectrum_plugin(property, true),
         }
@@ -55,11 +73,11 @@ impl Reader<'_> {
             "srgb" => plugin.get("color").and_then(|color| self.reflectance(color)).unwrap_or(Vec3::ONE),
             "blackbody" => {
                 let kelvin = plugin.positive(report, "temperature").unwrap_or(5000.0);
-                radiance(|nm| planck(nm, kelvin)) * plugin.number(report, "scale").unwrap_or(1.0)
+                fine_radiance(|nm| planck(nm, kelvin)) * plugin.number(report, "scale").unwrap_or(1.0)
             }
             "regular" | "irregular" => {
                 let curve = SpectrumSource::Curve(self.sampled_spectrum(&plugin)?);
-                if emits { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
+                if emits { fine_radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
             }
             _ => return None,
         };

@@ -255,7 +255,8 @@ impl Reader<'_> {
             Some(InfiniteLight::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let is_fine = picture.height >= FINE_ROWS;
-                let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
+                // Steps of the picture meet at its poles, where they are sharper than elsewhere.
+                let rows = (4 * picture.height).clamp(4 * FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
                 // The centre of an environment map is +z in Mitsuba and -z in Dürer.
                 if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {

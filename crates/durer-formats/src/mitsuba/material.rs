@@ -16,7 +16,9 @@ use durer_image::decode_srgb;
 use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
-use durer_scene::material::principled::{Backs, Facets, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{
+    Backs, Facets, NormalBacks, NormalBending, NormalGreen, Surroundings, Switch, Walls,
+};
 use durer_scene::material::two_sided::TwoSided;
 use durer_scene::material::{HairMaterial, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Vec3;
@@ -96,7 +98,15 @@ impl Reader<'_> {
             "hair" => return Rc::new(self.hair(plugin)),
             "null" => return Rc::new(MaterialDef::Null),
             "twosided" => {
-                let both = |material: &MaterialDef| Rc::new(material.changed(&|m| m.backs = Backs::Shown));
+                let both = |material: &MaterialDef| {
+                    Rc::new(material.changed(&|m| {
+                        m.backs = Backs::Shown;
+                        // A map within sees both sides as the front.
+                        if m.normal_texture.is_some() || m.bump_texture.is_some() {
+                            m.normal_backs = NormalBacks::Mirrored;
+                        }
+                    }))
+                };
                 let parts = self.child_plugins(plugin, Some("bsdf"));
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
@@ -150,7 +160,7 @@ impl Reader<'_> {
         let is_open = m.transmission_weight > 0.0 || m.walls == Walls::Thin || m.transmission_weight_texture.is_some();
         if !is_open {
             // A point whose normal faces away from the viewer is black too.
-            m.normal_bending = Switch::Off;
+            m.normal_bending = NormalBending::Off;
             if !self.inside_out {
                 m.backs = Backs::Black;
             }
@@ -197,14 +207,23 @@ impl Reader<'_> {
             self.report.unsupported_once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
             return inner;
         };
-        plugin.mark_known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let (bending, shadowing) = self.mapped_normals(plugin);
         let picture = self.number_texture(property, |x| x);
         if picture.is_none() {
             self.report.unsupported_once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
         Rc::new(inner.changed(&|m| {
-            (m.bump_texture, m.bump_height, m.normal_bending) = (picture.clone(), height, Switch::Off);
+            (m.bump_texture, m.bump_height) = (picture.clone(), height);
+            (m.normal_bending, m.normal_shadowing) = (bending, shadowing);
         }))
+    }
+
+    /// Reads what a bump or normal map does to normals that face away, and whether their points
+    /// hide light from each other.
+    fn mapped_normals(&self, plugin: &Plugin) -> (NormalBending, Switch) {
+        let on = |name| plugin.boolean(self.report, name).unwrap_or(true);
+        let bending = if on("flip_invalid_normals") { NormalBending::Turned } else { NormalBending::Off };
+        (bending, if on("use_shadowing_function") { Switch::On } else { Switch::Off })
     }
 
     fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
@@ -214,7 +233,7 @@ impl Reader<'_> {
             self.report.unsupported_once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
             return inner;
         };
-        plugin.mark_known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let (bending, shadowing) = self.mapped_normals(plugin);
         let raw = texture.boolean(self.report, "raw").unwrap_or(false);
         let picture = self.bitmap(&texture);
         texture.warn_unused(self.report);
@@ -225,7 +244,10 @@ impl Reader<'_> {
             picture = linear.unwrap_or(picture);
         }
         let name = asset(&mut self.scene, picture, property.at);
-        Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
+        Rc::new(inner.changed(&|m| {
+            (m.normal_texture, m.normal_green) = (Some(name.clone()), NormalGreen::Cross);
+            (m.normal_bending, m.normal_shadowing) = (bending, shadowing);
+        }))
     }
 
     /// Reads an index of refraction, which is given as a number or as the name of a substance.
@@ -262,8 +284,7 @@ impl Reader<'_> {
             let alphas = ["alpha_u", "alpha_v"].map(|name| self.value(plugin, name, 0.1));
             [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
         } else {
-            let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
-            (m.specular_roughness, m.specular_roughness_texture) = self.number_or_texture(plugin, "alpha", 0.1, root);
+            (m.specular_roughness, m.specular_roughness_texture) = self.root_or_texture(plugin, "alpha", 0.1);
         }
         match plugin.text(self.report, "distribution").as_deref() {
             Some("ggx") => m.specular_facets = Facets::GgxSeparable,
@@ -341,7 +362,7 @@ impl Reader<'_> {
         m.specular_ior = index;
         let nonlinear = plugin.boolean(self.report, "nonlinear").unwrap_or(false);
         let roughness = if m.specular_roughness_texture.is_some() { 0.0 } else { m.specular_roughness };
-        let boundary = Boundary::new(index, roughness, m.specular_facets == Facets::Beckmann);
+        let boundary = Boundary::new(index, roughness, m.specular_facets);
         let picture =
             m.base_color_texture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path)).cloned();
         match picture.filter(|_| nonlinear) {

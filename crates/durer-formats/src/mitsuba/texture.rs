@@ -12,6 +12,10 @@ use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
+/// Number of texels that replace a texel along each side, if their values are to be changed by a
+/// curved function. The error of linear interpolation falls with its square.
+const REFINEMENT: u32 = 8;
+
 /// Value of a Mitsuba texture plugin, which is a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
@@ -40,7 +44,7 @@ impl Reader<'_> {
         let bitmap = self.named_plugin(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, default) };
         let raw = bitmap.boolean(self.report, "raw").unwrap_or(false);
-        let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));
+        let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().own_depth(name, true, at));
         bitmap.warn_unused(self.report);
         picture
             .map_or(Texture::Constant(default), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
@@ -118,9 +122,25 @@ impl Reader<'_> {
         }
     }
 
+    /// Returns the square root of a number that may be a texture, from 0 to 1. Where texels are
+    /// interpolated, the root is that of the interpolated values.
+    pub fn root_or_texture(&mut self, plugin: &Plugin, name: &'static str, default: f32) -> (f32, Option<FileName>) {
+        let root = |x: f32| x.clamp(0.0, 1.0).sqrt();
+        match plugin.get(name).and_then(|property| self.changed_texture(property, root, REFINEMENT)) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (root(self.value(plugin, name, default)), None),
+        }
+    }
+
     /// Returns the picture of a property after applying `change` to its luminance, or `None` if the
     /// property is not a picture.
     pub fn number_texture(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
+        self.changed_texture(property, change, 1)
+    }
+
+    /// Version of [`Reader::number_texture`] that first replaces each texel by a square of `finer`
+    /// by `finer` interpolated ones.
+    fn changed_texture(&mut self, property: &Property, change: impl Fn(f32) -> f32, finer: u32) -> Option<FileName> {
         let fields =
             self.child_plugin(property).filter(|part| part.element == "texture" && part.kind == "checkerboard");
         let texture = match fields {
@@ -136,7 +156,7 @@ impl Reader<'_> {
         let decode = if raw && is_file(&picture) { decode_linear } else { decode_srgb };
         // The luminance of a colour is used where a number is expected.
         let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
-        let picture = self.pictures().changed(&picture, property.at, decode, number)?;
+        let picture = self.pictures().refined(&picture, property.at, decode, finer, number)?;
         Some(asset(&mut self.scene, picture, property.at))
     }
 
@@ -161,8 +181,7 @@ impl Reader<'_> {
 
     /// Reads the picture of a `bitmap` texture.
     pub fn bitmap(&self, texture: &Plugin) -> Option<TextureImage> {
-        let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
-        self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
+        self.bitmap_as(texture, |name, at| self.pictures().own_depth(name, false, at)).map(|(picture, _)| picture)
     }
 
     /// Reads the picture of a `bitmap` texture and the factor that multiplies it. The function

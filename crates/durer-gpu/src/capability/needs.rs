@@ -7,7 +7,7 @@ use durer_render::render::{Job, Sampling};
 use durer_render::world::{Geometry, Material, Object, Phong, Principled, ShadingRules, World};
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::light::Light;
-use durer_scene::material::principled::{Backs, Facets, Surroundings, Walls};
+use durer_scene::material::principled::{Backs, Facets, Layering, Surroundings, Walls};
 use durer_scene::material::{Pattern as _, PatternMaterial};
 use durer_scene::math::Color;
 use durer_scene::shape::Primitive;
@@ -171,7 +171,8 @@ fn of_phong(phong: &Phong, traces_paths: bool, found: &mut Vec<Feature>) {
 fn of_principled(principled: &Principled, found: &mut Vec<Feature>) {
     let m = &principled.definition;
     let is_smooth = Ggx::new(m.specular_roughness, 0.0).is_smooth();
-    let is_plain = m.subsurface_weight == 0.0
+    let is_plain = m.layering == Layering::OpenPbr
+        && m.subsurface_weight == 0.0
         && m.coat_weight == 0.0
         && m.fuzz_weight == 0.0
         && m.thin_film_weight == 0.0

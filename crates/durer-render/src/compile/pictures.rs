@@ -100,6 +100,7 @@ impl Loader<'_> {
             emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
             opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
             normal: one(layers.normal_texture.as_ref(), Encoding::Linear),
+            green: layers.normal_green,
             bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
             bump_height: layers.bump_height,
             parameters: Vec::new(),

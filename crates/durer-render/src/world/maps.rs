@@ -4,7 +4,7 @@ use super::material::{MaterialTextures, Principled};
 use super::{Geometry, SurfaceInteraction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{TEXTURE_FIELDS, TextureEffect};
-use durer_scene::material::principled::Switch;
+use durer_scene::material::principled::{NormalGreen, Switch};
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::shape::Shape;
 use durer_scene::texture::{Channel, Mapping, Texture};
@@ -116,12 +116,12 @@ impl World {
     pub(super) fn mapped_normal(&self, maps: &MaterialTextures, at: &SurfaceInteraction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
-        maps.normal.and_then(|map| self.normal_mapped(map, at, normal)).or(bumped)
+        maps.normal.and_then(|map| self.normal_mapped(map, maps.green, at, normal)).or(bumped)
     }
 
     /// Applies a normal map. In the map, x points along increasing u, and y along increasing v,
-    /// which is upwards in the picture.
-    fn normal_mapped(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
+    /// which is upwards in the picture, or to the left of x, seen from outside.
+    fn normal_mapped(&self, map: u32, green: NormalGreen, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
@@ -136,11 +136,11 @@ impl World {
             }
             _ => self.derivatives(at, mapping.second)?,
         };
-        let [u, v] = mapping.directions(grow);
+        let [u, v] = if green == NormalGreen::Cross { grow } else { mapping.directions(grow) };
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
         // Compute the vector perpendicular to normal and tangent, on the side of increasing v.
         let across = normal.cross(tangent);
-        let bitangent = if across.dot(v) < 0.0 { -across } else { across };
+        let bitangent = if green == NormalGreen::V && across.dot(v) < 0.0 { -across } else { across };
         let signed = |x: f32| 2.0 * x - 1.0;
         let (x, y) = (mapping.strength * signed(r), mapping.strength * signed(g));
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()

@@ -3,7 +3,7 @@
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{NormalGreen, Walls};
 use durer_scene::material::{ColorNoise, Parameters, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Color;
 use durer_scene::medium::Medium;
@@ -47,6 +47,8 @@ pub struct MaterialTextures {
     pub opacity: Option<u32>,
     /// Normal map, in tangent space.
     pub normal: Option<u32>,
+    /// Direction of the green channel of the normal map.
+    pub green: NormalGreen,
     /// Bump map.
     pub bump: Option<u32>,
     /// Difference in height between bump values 1 and 0, in world units.

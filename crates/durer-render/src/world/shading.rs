@@ -11,7 +11,7 @@ use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, StraightTransmission};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::Pattern;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{Backs, NormalBacks, NormalBending, Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::medium::Medium;
 use durer_scene::shape::SurfacePoint;
@@ -29,6 +29,38 @@ pub struct Shading<'w> {
     pub wo: Vec3,
     /// Combined BSDF of all materials at the point.
     pub bsdf: Bsdf<'w>,
+    /// Light that a mapped normal makes the surface hide from itself.
+    pub shadowing: Option<NormalShadowing>,
+}
+
+/// Facets that stand for the bumps of a bump or normal map, and that hide light from each other.
+///
+/// Source: Estevez, Lecocq and Stein, *A Microfacet-Based Shadowing Function to Solve the Bump
+/// Terminator Problem*, Ray Tracing Gems, 2019.
+#[derive(Clone, Copy, Debug)]
+pub struct NormalShadowing {
+    /// Normal without the map.
+    n: Vec3,
+    /// Square of the facets' GGX alpha.
+    alpha2: f32,
+}
+
+impl NormalShadowing {
+    /// Creates the facets for a point whose normal `n` was mapped to `mapped`.
+    fn new(n: Vec3, mapped: Vec3) -> Self {
+        NormalShadowing { n, alpha2: (0.125 * squared_tangent(mapped.dot(n))).min(1.0) }
+    }
+
+    /// Returns the share of the light from a direction that is not hidden.
+    fn share(&self, wi: Vec3) -> f32 {
+        2.0 / (1.0 + (1.0 + self.alpha2 * squared_tangent(wi.dot(self.n))).sqrt())
+    }
+}
+
+/// Returns the squared tangent of an angle that is given by its cosine.
+fn squared_tangent(cosine: f32) -> f32 {
+    let square = (cosine * cosine).clamp(1e-9, 1.0);
+    (1.0 - square) / square
 }
 
 impl Shading<'_> {
@@ -39,7 +71,13 @@ impl Shading<'_> {
         let local = self.frame.to_local(wi);
         let (value, pdf) = self.bsdf.eval(self.wo, local);
         let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0) || self.bsdf.is_fibre();
-        (if same_side { value } else { Spectrum::ZERO }, pdf)
+        (if same_side { value * self.lit_share(wi) } else { Spectrum::ZERO }, pdf)
+    }
+
+    /// Returns the share of the light from a direction in world space that the bumps of a map do
+    /// not hide.
+    pub fn lit_share(&self, wi: Vec3) -> f32 {
+        self.shadowing.map_or(1.0, |shadowing| shadowing.share(wi))
     }
 }
 
@@ -93,11 +131,18 @@ impl World {
         let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
         let mapped = mapped.find(|principled| principled.maps.normal.is_some() || principled.maps.bump.is_some());
         let n_shade = mapped.and_then(|principled| self.mapped_normal(&principled.maps, at)).unwrap_or(surface.n_shade);
-        let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
+        let mirrors = mapped.is_some_and(|principled| principled.definition.normal_backs == NormalBacks::Mirrored);
+        let mirrored = |n: Vec3| 2.0 * n.dot(surface.n_shade) * surface.n_shade - n;
+        let n_shade = if inside && mirrors { mirrored(n_shade) } else { n_shade };
+        let [n, n_geo, unmapped] = [n_shade, surface.n_geo, surface.n_shade].map(|n| if inside { -n } else { n });
         let wo = -dir.normalize_or(-n_geo);
-        let n = n.normalize_or(n_geo);
+        let mut n = n.normalize_or(n_geo);
         let first = mapped.or_else(|| parts.first().and_then(|part| part.phong.principled.as_ref()));
-        let keeps = first.is_some_and(|principled| principled.definition.normal_bending == Switch::Off);
+        let bending = first.map_or(NormalBending::On, |principled| principled.definition.normal_bending);
+        let keeps = bending != NormalBending::On;
+        if bending == NormalBending::Turned && mapped.is_some() && n.dot(wo) * unmapped.dot(wo) <= 0.0 {
+            n = 2.0 * n.dot(unmapped) * unmapped - n;
+        }
         let is_turned_away = keeps && n.dot(wo) <= 0.0;
         let bent = if keeps && !is_turned_away { n } else { bend_normal(n, n_geo, wo) };
         let frame = self.frame(&parts, at, bent);
@@ -105,7 +150,9 @@ impl World {
         let wo = frame.to_local(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let view = View { lanes, wo, normal, inside, eta };
-        let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
+        let shadows = mapped.is_some_and(|principled| principled.definition.normal_shadowing == Switch::On);
+        let shadowing = shadows.then(|| NormalShadowing::new(unmapped, n));
+        let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default(), shadowing };
         if is_turned_away {
             return shading;
         }

@@ -12,6 +12,7 @@ mod anisotropic;
 
 use super::fresnel;
 use super::microfacet::{Ggx, fuzz_value};
+use crate::material::principled::Facets;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use rayon::prelude::*;
@@ -81,9 +82,14 @@ fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 fn points() -> impl Iterator<Item = Vec2> {
+    points_of(POINTS)
+}
+
+/// Version of [`points`] for a given number of points.
+fn points_of(count: u32) -> impl Iterator<Item = Vec2> {
     // The steps are 1/p and 1/p^2 in units of 2^-32, where p is the root of p^3 = p + 1.
     let unit = |i: u32, step: u32| ((i.wrapping_mul(step) >> 8) as f32 + 0.5) / 16_777_216.0;
-    (0..POINTS).map(move |i| Vec2::new(unit(i, 3_242_174_889), unit(i, 2_447_445_414)))
+    (0..count).map(move |i| Vec2::new(unit(i, 3_242_174_889), unit(i, 2_447_445_414)))
 }
 
 fn mean(value: impl Fn(Vec2) -> f32) -> f32 {
@@ -150,6 +156,9 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
 pub struct DielectricAlbedo {
     /// Index of refraction inside, relative to the index outside.
     pub ior: f32,
+    /// Facets of the boundary. With those of Mitsuba, light that is scattered several times between
+    /// facets is lost; otherwise, it is reflected and refracted in the same proportion as the rest.
+    pub facets: Facets,
     /// Cosine-weighted mean of the reflectance from outside, for a smooth boundary.
     smooth_mean: f32,
     /// Tables for light from outside and from inside. Each pair holds the share of light that is
@@ -163,17 +172,18 @@ pub struct DielectricAlbedo {
 
 impl PartialEq for DielectricAlbedo {
     fn eq(&self, other: &Self) -> bool {
-        self.ior == other.ior
+        self.ior == other.ior && self.facets == other.facets
     }
 }
 
 impl DielectricAlbedo {
     /// Creates a boundary with the relative index `ior`. The tables of the boundary are computed on
     /// first use.
-    pub fn new(ior: f32) -> Self {
+    pub fn new(ior: f32, facets: Facets) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
         DielectricAlbedo {
             ior,
+            facets,
             smooth_mean,
             tables: OnceLock::new(),
             means: OnceLock::new(),
@@ -188,7 +198,7 @@ impl DielectricAlbedo {
             [self.ior, 1.0 / self.ior].map(|eta| {
                 [false, true].map(|all| {
                     Table::new(|cosine, roughness| {
-                        let (ggx, wo) = (isotropic(roughness), direction(cosine));
+                        let (ggx, wo) = (isotropic(roughness).with(self.facets), direction(cosine));
                         mean(|u| facet_weight(ggx, wo, eta, u, all))
                     })
                 })
@@ -210,13 +220,22 @@ impl DielectricAlbedo {
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
     }
 
-    /// Returns the reflectance from outside, which is the Fresnel reflectance if the boundary is
-    /// smooth.
+    /// Returns the share of the light from outside that does not pass the boundary, which is the
+    /// Fresnel reflectance if the boundary is smooth.
     pub fn reflectance(&self, cosine: f32, roughness: f32) -> f32 {
         match Ggx::new(roughness, 0.0).is_smooth() {
             true => fresnel::dielectric(cosine, self.ior),
-            false => self.reflected(false, cosine, roughness),
+            false => self.rough_reflectance(cosine, roughness),
         }
+    }
+
+    /// Version of [`DielectricAlbedo::reflectance`] for rough boundaries.
+    pub fn rough_reflectance(&self, cosine: f32, roughness: f32) -> f32 {
+        if self.facets == Facets::Ggx {
+            return self.reflected(false, cosine, roughness);
+        }
+        let [reflected, all] = self.tables(false);
+        (1.0 + reflected.at(cosine, roughness) - all.at(cosine, roughness)).clamp(0.0, 1.0)
     }
 
     /// Returns the cosine-weighted mean of [`DielectricAlbedo::reflectance`] over the hemisphere.
@@ -226,7 +245,7 @@ impl DielectricAlbedo {
         }
         let of = |row: usize| {
             let roughness = row as f32 / (SIZE - 1) as f32;
-            mean_by_cosine(|cosine| self.reflected(false, cosine, roughness))
+            mean_by_cosine(|cosine| self.rough_reflectance(cosine, roughness))
         };
         let means = once(&self.means, || (0..SIZE).map(of).collect());
         let (i, a) = table_position(roughness);
@@ -293,13 +312,24 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     })
 }
 
+/// Estimates the share of light that a rough boundary reflects, for light whose direction has the
+/// given cosine, or the share that is not lost if `all` is set. Light that is scattered several
+/// times is lost.
+pub fn single_share(surface: Ggx, cosine: f32, eta: f32, all: bool) -> f32 {
+    // Total internal reflection at a nearly smooth boundary starts at a sharp angle.
+    let many = if eta < 1.0 { 2 * POINTS } else { POINTS / 4 };
+    let (ggx, wo) = (surface.clamped(), direction(cosine));
+    let sum: f64 = points_of(many).map(|u| f64::from(facet_weight(ggx, wo, eta, u, all))).sum();
+    (sum / f64::from(many)) as f32
+}
+
 /// Returns the weight of one sampled facet, for its reflection, or for reflection and refraction if
 /// `all` is set.
 fn facet_weight(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);
     let reflected = fresnel::dielectric(cosine, eta);
-    let visible = |wi: Vec3| ggx.masking_shadowing(wo, wi) / ggx.masking(wo);
+    let visible = |wi: Vec3| ggx.sampled_weight(wo, wi, h);
     let up = 2.0 * cosine * h - wo;
     let mut sum = if up.z > 0.0 { reflected * visible(up) } else { 0.0 };
     if all && reflected < 1.0 {

@@ -119,6 +119,50 @@ pub fn diffuse(eta: f32) -> f32 {
     .clamp(0.0, 1.0)
 }
 
+/// Returns the reflectance at normal incidence of a boundary of relative index `eta`.
+pub fn ratio_squared(eta: f32) -> f32 {
+    let ratio = (eta - 1.0) / (eta + 1.0);
+    ratio * ratio
+}
+
+/// Returns the weight of white at a cosine in Schlick's approximation, (1 - cosine)^5.
+pub fn schlick_weight(cosine: f32) -> f32 {
+    let m = (1.0 - cosine).clamp(0.0, 1.0);
+    m * m * m * m * m
+}
+
+/// Version of [`schlick_weight`] for a boundary of relative index `eta`. Below 1, the angle behind
+/// the boundary counts.
+pub fn schlick_weight_at(cosine: f32, eta: f32) -> f32 {
+    if eta > 1.0 {
+        return schlick_weight(cosine);
+    }
+    schlick_weight((1.0 - (1.0 - cosine * cosine) / (eta * eta)).max(0.0).sqrt())
+}
+
+/// Reflectance of the facets of Disney's material: a mixture of Fresnel's equations with Schlick's
+/// approximation, for metal and tinted reflection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisneyFresnel {
+    /// Relative index of refraction.
+    pub eta: f32,
+    /// Share of the dielectric that is not tinted.
+    pub plain: f32,
+    /// Share of the rest.
+    pub schlick: f32,
+    /// Reflectance of the rest at normal incidence, times its share.
+    pub f0: Spectrum,
+}
+
+impl DisneyFresnel {
+    /// Returns the reflectance at a cosine.
+    pub fn at(&self, cosine: f32) -> Spectrum {
+        let weight = schlick_weight_at(cosine, self.eta);
+        let plain = if self.plain > 0.0 { self.plain * dielectric(cosine, self.eta) } else { 0.0 };
+        Spectrum::splat(plain + self.schlick * weight) + self.f0 * (1.0 - weight)
+    }
+}
+
 /// Returns the relative index of a boundary whose reflectance at normal incidence is `r0`.
 pub fn ior_of_reflectance(r0: f32) -> f32 {
     let root = r0.clamp(0.0, 0.98).sqrt();

@@ -9,6 +9,7 @@
 
 use super::Bsdf;
 use super::albedo::{self, DielectricAlbedo};
+use super::disney::DisneyStack;
 use super::film::Film;
 use super::fresnel::{self, F82, MetalCurve, Sheet};
 use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
@@ -18,7 +19,7 @@ use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use crate::describe::FileName;
-use crate::material::principled::{Switch, Walls};
+use crate::material::principled::{Facets, Layering, Switch, Walls};
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
@@ -47,18 +48,19 @@ impl Tables {
         measured: Option<Arc<Curve>>,
         cache: &mut Vec<Arc<DielectricAlbedo>>,
     ) -> Self {
-        let mut of = |ior: f32| {
-            let found = cache.iter().find(|tables| tables.ior == ior).cloned();
+        let mut of = |ior: f32, facets: Facets| {
+            let found = cache.iter().find(|tables| tables.ior == ior && tables.facets == facets).cloned();
             found.unwrap_or_else(|| {
-                cache.push(Arc::new(DielectricAlbedo::new(ior)));
+                cache.push(Arc::new(DielectricAlbedo::new(ior, facets)));
                 cache[cache.len() - 1].clone()
             })
         };
+        let loses_light = material.energy_compensation == Switch::Off;
         Tables {
-            opaque: of(opaque_ior(material)),
-            glass: of(material.specular_ior),
+            opaque: of(opaque_ior(material), if loses_light { material.specular_facets } else { Facets::Ggx }),
+            glass: of(material.specular_ior, Facets::Ggx),
             measured,
-            coat: of(material.coat_ior),
+            coat: of(material.coat_ior, Facets::Ggx),
         }
     }
 
@@ -70,6 +72,9 @@ impl Tables {
     /// Computes the tables that the material can use, on all threads, so that no render thread has
     /// to compute them.
     pub fn prepare(&self, m: &PrincipledMaterial) {
+        if m.layering == Layering::Disney {
+            return;
+        }
         // A texture multiplies the parameter. The product is still 0 if the parameter is 0, but any
         // other value may change.
         let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
@@ -155,16 +160,15 @@ pub struct View<'a> {
 
 /// Adds the lobes of a material with `parameters` to `bsdf`, each scaled by `factor`.
 pub fn push_lobes<'a>(bsdf: &mut Bsdf<'a>, factor: f32, parameters: &Parameters, tables: &'a Tables, view: View) {
-    let stack = LayerStack {
-        parameters,
-        tables,
-        view,
-        base: match &tables.measured {
-            Some(curve) => view.lanes.measured(parameters.base_color, curve),
-            None => view.lanes.reflectance(parameters.base_color),
-        },
-        specular: view.lanes.reflectance(parameters.specular_color),
+    let base = match &tables.measured {
+        Some(curve) => view.lanes.measured(parameters.base_color, curve),
+        None => view.lanes.reflectance(parameters.base_color),
     };
+    if parameters.layering == Layering::Disney {
+        return DisneyStack { parameters, view, base, factor }.push_lobes(bsdf);
+    }
+    let stack =
+        LayerStack { parameters, tables, view, base, specular: view.lanes.reflectance(parameters.specular_color) };
     stack.push_lobes(bsdf, factor);
 }
 
@@ -287,7 +291,7 @@ impl<'t> LayerStack<'_, 't> {
         }
         let (facet, reflectance) = match film {
             Some(film) => (Facet::Film(film), albedo::over_facets(ggx, self.view.wo, |cosine| film.reflected(cosine))),
-            None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
+            None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.rough_reflectance(mu, roughness))),
         };
         let rough = RoughReflection { ggx: ggx.clamped(), facet, transmits: false };
         let gain = if self.compensates() { tables.gain(false, mu, roughness) } else { 1.0 };

@@ -117,6 +117,15 @@ impl Ggx {
         }
     }
 
+    /// Returns the share of the light that is not hidden on its way to `wi`, if it comes from `wo`
+    /// over a facet with the normal `h` that [`Ggx::sample_visible`] returned.
+    pub fn sampled_weight(&self, wo: Vec3, wi: Vec3, h: Vec3) -> f32 {
+        match self.facets {
+            Facets::Beckmann => self.masking_shadowing(wo, wi) * self.sampling_divisor(wo, h, 0.0).max(0.0),
+            Facets::Ggx | Facets::GgxSeparable => self.masking_shadowing(wo, wi) / self.masking(wo),
+        }
+    }
+
     /// Returns density(h) · wo·h / wo.z divided by the pdf of the normals that
     /// [`Ggx::sample_visible`] returns. `hidden_o` is [`Ggx::lambda`] of `wo`.
     pub fn sampling_divisor(&self, wo: Vec3, h: Vec3, hidden_o: f32) -> f32 {

@@ -5,6 +5,7 @@
 //! surface. The viewer is above the surface (z > 0).
 
 pub mod albedo;
+mod disney;
 pub mod film;
 mod frame;
 pub mod fresnel;

@@ -4,6 +4,7 @@
 
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
+use super::lobe::disney::{DisneyCoat, DisneyDiffuse};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::hair::Fibre;
 use super::lobe::rough::{Facet, RoughReflection};
@@ -159,6 +160,11 @@ pub fn non_delta_lobes() -> Vec<(&'static str, Lobe<'static>)> {
         ),
         ("rough glass", glass(0.5, 1.5)),
         ("rough glass from inside", glass(0.6, 1.0 / 1.5)),
+        (
+            "Disney's base",
+            DisneyDiffuse { color: Spectrum::ONE, sheen: Spectrum::ONE, roughness: 0.5, flatness: 0.5 }.into(),
+        ),
+        ("Disney's coat", DisneyCoat { alpha: 0.1, eta: 1.5 }.into()),
         ("hair", hair(0)),
         ("fur", hair(1)),
     ]

@@ -1,6 +1,6 @@
 //! Parameters of a layered material at one surface point, and the textures that change them.
 
-use super::principled::{Facets, PrincipledMaterial, Switch, Walls};
+use super::principled::{Facets, Layering, PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;
 use crate::math::Vec3;
 
@@ -37,8 +37,11 @@ parameters! {
     base_color: Vec3,
     base_diffuse_roughness: f32,
     base_metalness: f32,
+    base_flatness: f32,
+    layering: Layering,
     specular_weight: f32,
     specular_color: Vec3,
+    specular_tint: f32,
     specular_roughness: f32,
     specular_facets: Facets,
     specular_anisotropy: f32,

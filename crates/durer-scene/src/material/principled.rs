@@ -23,10 +23,30 @@ described_words! {
 }
 
 described_words! {
+    /// Model that combines the layers of a principled material.
+    Layering { OpenPbr = "openPbr", Disney = "disney" }
+}
+
+described_words! {
     /// Distribution of the microfacets of a rough surface, and how they hide each other. `ggx` is
     /// GGX with masking that is correlated by height. The others multiply the masking of both
     /// directions, as Mitsuba does.
     Facets { Ggx = "ggx", GgxSeparable = "ggxSeparable", Beckmann = "beckmann" }
+}
+
+described_words! {
+    /// Treatment of interpolated and mapped normals that face away from the viewer.
+    NormalBending { On = "on", Off = "off", Turned = "turned" }
+}
+
+described_words! {
+    /// Direction along which the green channel of a normal map tilts the normal.
+    NormalGreen { V = "v", Cross = "cross" }
+}
+
+described_words! {
+    /// Mapped normals on the back of a surface.
+    NormalBacks { Turned = "turned", Mirrored = "mirrored" }
 }
 
 described_words! {
@@ -38,6 +58,13 @@ described! {
     /// Layered material with the parameters of OpenPBR Surface: fuzz over a coat over metal, glass
     /// or a diffuse base.
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
+        /// `openPbr`: each layer gets the light that the layers above let through. `disney`: the
+        /// sum of the lobes of Disney's material of 2015, as in Mitsuba's `principled` and, with
+        /// thin walls, `principledthin`; it does not conserve energy. Its coat has an index of 1.5
+        /// and a quarter of `coatWeight`; its sheen is the fuzz. It ignores the roughness of the
+        /// fuzz, films, subsurface scattering in solids, and all colours but `baseColor` and
+        /// `fuzzColor`.
+        layering: Layering = Layering::OpenPbr, optional, Constraint::Any, ["layering" in set::DURER];
         /// Strength of the base, from 0 to 1; scales the colours of the diffuse base and the metal.
         base_weight: f32 = 1.0, optional, Constraint::UnitInterval, ["baseWeight" in set::DURER];
         /// Texture that multiplies `baseWeight`. Textures of scalars use the red channel, or the
@@ -62,6 +89,9 @@ described! {
         base_metalness: f32 = 0.0, optional, Constraint::UnitInterval, ["baseMetalness" in set::DURER];
         /// Texture that multiplies `baseMetalness`.
         base_metalness_texture: Option<FileName> = None, optional, Constraint::Any, ["baseMetalnessTexture" in set::DURER];
+        /// With `layering disney`: share of the diffuse base that is replaced by an approximation
+        /// of subsurface scattering, from 0 to 1.
+        base_flatness: f32 = 0.0, optional, Constraint::UnitInterval, ["baseFlatness" in set::DURER];
         /// Factor on the reflectance at normal incidence, usually from 0 to 1.
         specular_weight: f32 = 1.0, optional, Constraint::NonNegative, ["specularWeight" in set::DURER];
         /// Texture that multiplies the reflection equally at all angles.
@@ -70,6 +100,9 @@ described! {
         specular_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["specularColor" in set::DURER];
         /// Texture that multiplies `specularColor`, read as sRGB.
         specular_color_texture: Option<FileName> = None, optional, Constraint::Any, ["specularColorTexture" in set::DURER];
+        /// With `layering disney`: share of the reflection of a dielectric that has the hue of
+        /// `baseColor`, from 0 to 1.
+        specular_tint: f32 = 0.0, optional, Constraint::UnitInterval, ["specularTint" in set::DURER];
         /// Roughness of the surface, from 0 (a mirror) to 1; its square is GGX's alpha.
         specular_roughness: f32 = 0.3, optional, Constraint::UnitInterval, ["specularRoughness" in set::DURER];
         /// Texture that multiplies `specularRoughness`.
@@ -229,9 +262,22 @@ described! {
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
         bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
+        /// Direction of green in the normal map. `v`: along increasing v. `cross`: along the cross
+        /// product of the normal and the direction of increasing u, which transforms of the texture
+        /// do not turn, as in Mitsuba.
+        normal_green: NormalGreen = NormalGreen::V, optional, Constraint::Any, ["normalGreen" in set::DURER];
         /// `on`: bends interpolated and mapped normals that face away from the viewer, so that
         /// mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
-        normal_bending: Switch = Switch::On, optional, Constraint::Any, ["normalBending" in set::DURER];
+        /// `turned`: like `off`, but first turns mapped normals that face away half around the
+        /// interpolated normal, as Mitsuba's `flip_invalid_normals` does.
+        normal_bending: NormalBending = NormalBending::On, optional, Constraint::Any, ["normalBending" in set::DURER];
+        /// `turned`: the back of the surface has the bumps of the front, seen from behind.
+        /// `mirrored`: it has the mapped normals of the front, mirrored at the surface, as with
+        /// Mitsuba's `twosided` around a map.
+        normal_backs: NormalBacks = NormalBacks::Turned, optional, Constraint::Any, ["normalBacks" in set::DURER];
+        /// `on`: points with mapped normals reflect less light from grazing directions, as facets
+        /// hide each other, so that their shading fades before the light sets. Mitsuba does so.
+        normal_shadowing: Switch = Switch::Off, optional, Constraint::Any, ["normalShadowing" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through
         /// unchanged.
         opacity: f32 = 1.0, optional, Constraint::UnitInterval, ["opacity" in set::DURER];

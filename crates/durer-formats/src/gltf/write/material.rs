@@ -6,7 +6,7 @@ use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::parameters::TEXTURE_FIELDS;
-use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::material::principled::{Backs, Layering, Walls};
 use durer_scene::material::{Pattern, PhongMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::scene::{Material, TextureImage};
@@ -23,6 +23,9 @@ impl Writer<'_> {
         }
         let scene = self.scene;
         let index = match &scene.materials.get(number as usize)?.value {
+            Material::Principled(layers) if layers.layering == Layering::Disney => {
+                Some(self.layers(&crate::disney::as_layers(layers), has_alpha))
+            }
             Material::Principled(layers) => Some(self.layers(layers, has_alpha)),
             Material::Phong(phong, noise) => {
                 if noise.is_some() {

@@ -5,7 +5,7 @@ use super::shapes::assert_faces_inwards;
 use super::{clean, clean_in, layers, material, objects, picture, read};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Facets, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{Backs, Facets, NormalBending, NormalGreen, Surroundings, Switch, Walls};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{Material, PictureBytes};
 
@@ -169,6 +169,42 @@ fn normal_maps_are_linear_in_every_encoding() {
 }
 
 #[test]
+fn mapped_normals_turn_and_hide_light_unless_told_otherwise() {
+    let picture = "<texture name='normalmap' type='bitmap'><string name='filename' value='n.ppm'/></texture>";
+    let of = |kind: &str, more: &str| {
+        let map = format!("<bsdf type='{kind}'>{picture}{more}<bsdf type='diffuse'/></bsdf>");
+        let files: &[(&str, &[u8])] = &[("n.ppm", b"P6\n1 1\n255\n\x80\x80\xff")];
+        let scene = clean_in(files, &format!("<shape type='rectangle'>{map}</shape>"));
+        let Material::Principled(layers) = material(&scene) else { panic!() };
+        (layers.normal_bending, layers.normal_shadowing, layers.normal_green)
+    };
+    let off = |name: &str| format!("<boolean name='{name}' value='false'/>");
+    use NormalBending::{Off, Turned};
+    assert_eq!(of("normalmap", ""), (Turned, Switch::On, NormalGreen::Cross));
+    assert_eq!(of("normalmap", &off("flip_invalid_normals")), (Off, Switch::On, NormalGreen::Cross));
+    assert_eq!(of("bumpmap", &off("use_shadowing_function")), (Turned, Switch::Off, NormalGreen::V));
+}
+
+#[test]
+fn roots_of_pictures_are_those_of_interpolated_values() {
+    // Alpha is 0.04 in one texel and 0.64 in the next, and 0.34 between them.
+    let alpha = "<texture name='alpha' type='bitmap'><string name='filename' value='a.pfm'/></texture>";
+    let metal = format!("<shape type='sphere'><bsdf type='roughconductor'>{alpha}</bsdf></shape>");
+    let scene = clean_in(&[("a.pfm", &picture([[0.04; 3], [0.64; 3]]))], &metal);
+    let Material::Principled(layers) = material(&scene) else { panic!() };
+    let name = &layers.specular_roughness_texture.as_ref().unwrap().path;
+    let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[name].bytes else { panic!("{name}") };
+    let image = durer_image::read(bytes, path).unwrap();
+    assert_eq!((image.width, image.height), (16, 8));
+    for (x, pixel) in image.pixels.iter().take(16).enumerate() {
+        // The picture repeats, so the values form a triangle between the two texels.
+        let place = (x as f32 + 0.5) / 8.0 - 0.5;
+        let wanted = (0.04 + 0.6 * (1.0 - (place.abs() - 1.0).abs())).sqrt();
+        assert!((pixel.x - wanted).abs() < 1e-5, "{x}: {} and not {wanted}", pixel.x);
+    }
+}
+
+#[test]
 fn pictures_of_emitters_may_exceed_1() {
     let emitter = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
         <string name='filename' value='lamp.pfm'/></texture></emitter></shape>";
@@ -180,8 +216,7 @@ fn pictures_of_emitters_may_exceed_1() {
     let image = durer_image::read(bytes, path).unwrap();
     let wanted = [Vec3::new(1.0, 0.25, 0.0), Vec3::splat(0.5)];
     for (pixel, wanted) in image.pixels.iter().zip(wanted) {
-        let light = Vec3::from_array(pixel.to_array().map(srgb));
-        assert!((light - wanted).abs().max_element() < 0.01, "{light} and not {wanted}");
+        assert!((*pixel - wanted).abs().max_element() < 1e-6, "{pixel} and not {wanted}");
     }
 }
 

@@ -68,7 +68,7 @@ impl Writer<'_> {
                 };
                 masked.and(self.bsdf(inner))
             }
-            Surface::NormalMapped(inner, picture) => {
+            Surface::NormalMapped(inner, picture, shadows) => {
                 if picture.mapping.strength != 1.0 {
                     self.export.warn_lost("normal maps of Mitsuba have no strength: they are written as they are");
                 }
@@ -76,16 +76,18 @@ impl Writer<'_> {
                 match self.export.color_file(picture, true, "color", |color| color) {
                     Some(file) => Element::plugin("bsdf", "normalmap")
                         .and(self.bitmap("normalmap", &file, &picture.mapping))
+                        .boolean("use_shadowing_function", *shadows)
                         .and(inner),
                     None => inner,
                 }
             }
-            Surface::BumpMapped(inner, picture, height) => {
+            Surface::BumpMapped(inner, picture, height, shadows) => {
                 let inner = self.bsdf(inner);
                 match self.export.number_file(picture, "height", |x| x) {
                     Some(file) => Element::plugin("bsdf", "bumpmap")
                         .and(self.bitmap("arbitrary", &file, &picture.mapping))
                         .float("scale", height)
+                        .boolean("use_shadowing_function", *shadows)
                         .and(inner),
                     None => inner,
                 }
@@ -105,7 +107,7 @@ impl Writer<'_> {
                 let mut paint = base.clone();
                 if !is_smooth {
                     // The inverse of the reader's conversion.
-                    let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), rough.facets == Facets::Beckmann);
+                    let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), rough.facets);
                     let fades = *darkens && base.picture.is_none();
                     paint.color = base.color.map(|color| boundary.color(color, fades));
                 }
@@ -221,9 +223,11 @@ fn one_sided(surface: &Surface) -> Surface {
         Surface::Mix(parts, share, picture) => {
             Surface::Mix(Box::new([one_sided(&parts[0]), one_sided(&parts[1])]), *share, picture.clone())
         }
-        Surface::NormalMapped(inner, picture) => Surface::NormalMapped(Box::new(one_sided(inner)), picture.clone()),
-        Surface::BumpMapped(inner, picture, height) => {
-            Surface::BumpMapped(Box::new(one_sided(inner)), picture.clone(), *height)
+        Surface::NormalMapped(inner, picture, shadows) => {
+            Surface::NormalMapped(Box::new(one_sided(inner)), picture.clone(), *shadows)
+        }
+        Surface::BumpMapped(inner, picture, height, shadows) => {
+            Surface::BumpMapped(Box::new(one_sided(inner)), picture.clone(), *height, *shadows)
         }
         other => other.clone(),
     }

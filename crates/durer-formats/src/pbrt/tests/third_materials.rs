@@ -90,10 +90,11 @@ fn other_materials_read_their_parameters() {
 #[test]
 fn substrate_mean_albedo_follows_its_formula() {
     use durer_scene::bsdf::albedo::DielectricAlbedo;
+    use durer_scene::material::principled::Facets;
     // The mean reflectance is 23/28 of (1 - Ks) Kd.
     let parts = parts("Material \"substrate\" \"rgb Kd\" [ 0.2 0.4 0.8 ] \"rgb Ks\" [ 0.04 0.04 0.04 ]");
     let (share, base) = parts.iter().find(|(_, layers)| layers.base_color != Vec3::ZERO).unwrap();
-    let boundary = DielectricAlbedo::new(base.specular_ior);
+    let boundary = DielectricAlbedo::new(base.specular_ior, Facets::Ggx);
     let passing = 1.0 - boundary.mean(base.specular_roughness);
     let mean = *share * passing * base.base_color;
     assert!((mean / (Vec3::new(0.2, 0.4, 0.8) * 0.96 * 23.0 / 28.0) - Vec3::ONE).abs().max_element() < 5e-3, "{mean}");

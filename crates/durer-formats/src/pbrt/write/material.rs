@@ -28,8 +28,8 @@ impl Writer<'_> {
                 }
                 self.opaque(directive, opaque, None)
             }
-            Surface::NormalMapped(inner, picture) => return self.relief(name, inner, Some(picture), None),
-            Surface::BumpMapped(inner, picture, height) => {
+            Surface::NormalMapped(inner, picture, _) => return self.relief(name, inner, Some(picture), None),
+            Surface::BumpMapped(inner, picture, height, _) => {
                 return self.relief(name, inner, None, Some((picture, *height)));
             }
             Surface::Glass { ior, rough, reflected, transmitted } => {

@@ -146,7 +146,7 @@ impl<'w> Path<'w> {
         let mut bsdf = Bsdf::default();
         bsdf.push(Diffuse::lambert(Spectrum::ONE), Spectrum::ONE, 1.0);
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
-        let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
+        let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf, shadowing: None };
         let context = self.context(id);
         let nowhere = Ray64::new(surface.point(), Vec3::ZERO, 0.0, 0.0);
         let active = PathState { camera_distance: None, ..self.start(nowhere, id) };

@@ -155,7 +155,8 @@ impl VertexKind<'_, '_> {
                 if transmits != (sample.wi.z < 0.0) && !shading.bsdf.is_fibre() {
                     return None;
                 }
-                Some(BsdfSample { wi, weight: sample.weight, pdf: sample.pdf, transmits, lobe: sample.lobe })
+                let weight = sample.weight * shading.lit_share(wi);
+                Some(BsdfSample { wi, weight, pdf: sample.pdf, transmits, lobe: sample.lobe })
             }
             VertexKind::Medium(_, dir, phase) => {
                 let wi = phase.sample(*dir, u);

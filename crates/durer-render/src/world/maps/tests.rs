@@ -8,6 +8,7 @@ use durer_scene::describe::{Describe, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::material::{Parameters, PrincipledMaterial};
 use durer_scene::math::{Ray, Vec3};
+use durer_scene::spectrum::Lanes;
 use std::path::Path;
 
 const FOLDER: &str = "maps";
@@ -227,5 +228,46 @@ fn flat_maps_keep_the_normals_of_every_shape() {
             let [bent, plain] = normal(&world, Vec3::new(0.21, -0.13, 9.0), Vec3::NEG_Z);
             assert!((bent - plain).length() < 0.01, "{shape}, {text}: {bent} {plain}");
         }
+    }
+}
+
+#[test]
+fn mapped_normals_that_face_away_are_black_or_turned() {
+    // The map tilts normals by 53 degrees towards increasing u, which is +x, and v, which is +y.
+    let folder = folder("tilt", &[("u.ppm", 4, &|_, _| [230, 128, 204]), ("v.ppm", 4, &|_, _| [128, 230, 204])]);
+    let mesh = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
+    // The same wall with the picture upside down.
+    std::fs::write(
+        folder.path().join("down.obj"),
+        mesh.replace("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1", "vt 0 1\nvt 1 1\nvt 1 0\nvt 0 0"),
+    )
+    .unwrap();
+    let seen = |words: &str, wall: &str, wo: Vec3| {
+        let world = world(words, &format!("TriangleMesh {{ obj_file {wall}.obj }}"), folder.path());
+        let at = hit(&world, 5.0 * wo + Vec3::new(0.3, 0.2, 0.0), -wo);
+        let shading = world.shading(&at, 1.5, &Lanes::Rgb);
+        let share = shading.lit_share(Vec3::new(-0.6, 0.0, 0.8));
+        (shading.frame.normal, shading.bsdf.is_black(), share)
+    };
+    let from_left = Vec3::new(-0.96, 0.0, 0.28);
+    let (tilted, turned) = (Vec3::new(0.8, 0.0, 0.6), Vec3::new(-0.8, 0.0, 0.6));
+    let check = |(normal, black, share): (Vec3, bool, f32), wanted: Vec3, is_black: bool, lit: f32| {
+        assert!((normal - wanted).length() < 0.01 && black == is_black, "{normal} {black}");
+        assert!((share - lit).abs() < 2e-3, "{share} and not {lit}");
+    };
+    check(seen("normalTexture u.ppm normalBending off", "wall", Vec3::Z), tilted, false, 1.0);
+    assert!(seen("normalTexture u.ppm normalBending off", "wall", from_left).1);
+    check(seen("normalTexture u.ppm normalBending turned", "wall", Vec3::Z), tilted, false, 1.0);
+    check(seen("normalTexture u.ppm normalBending turned", "wall", from_left), turned, false, 1.0);
+    // The facets have an alpha squared of tan^2(53 degrees) / 8 = 2/9, and the squared tangent of
+    // the light's angle is 9/16.
+    let lit = 2.0 / (1.0 + (1.0_f32 + 0.125).sqrt());
+    check(seen("normalTexture u.ppm normalShadowing on", "wall", Vec3::Z), tilted, false, lit);
+    // Green follows v, or the cross product of the normal and the direction of u.
+    let up = Vec3::new(0.0, 0.8, 0.6);
+    for (green, wall, wanted) in [("v", "wall", up), ("v", "down", -up), ("cross", "wall", up), ("cross", "down", up)] {
+        let (normal, ..) = seen(&format!("normalTexture v.ppm normalGreen {green}"), wall, Vec3::Z);
+        assert!((normal - Vec3::new(0.0, wanted.y, 0.6)).length() < 0.01, "{green} {wall}: {normal}");
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod blinn;
 pub mod diffuse;
+pub mod disney;
 pub mod fuzz;
 pub mod glass;
 pub mod hair;
@@ -153,6 +154,10 @@ lobes! {
     Through(glass::StraightTransmission),
     /// Fuzz made of short fibres, as on velvet.
     Fuzz(fuzz::Fuzz),
+    /// Diffuse base and sheen of Disney's material.
+    DisneyDiffuse(disney::DisneyDiffuse),
+    /// Clear coat of Disney's material.
+    DisneyCoat(disney::DisneyCoat),
     /// Single hair fibre.
     Hair(hair::Hair<'a>),
 }

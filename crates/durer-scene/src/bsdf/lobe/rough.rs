@@ -3,7 +3,7 @@
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::film::Film;
-use crate::bsdf::fresnel::{self, MetalCurve, Sheet};
+use crate::bsdf::fresnel::{self, DisneyFresnel, MetalCurve, Sheet};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -21,6 +21,10 @@ pub enum Facet {
     SheetTransmission(Sheet),
     /// Base that is covered by a thin film.
     Film(Film),
+    /// Disney's mixture of metal and dielectric.
+    Disney(DisneyFresnel),
+    /// Transmission through a boundary with the given relative index.
+    Passing(f32),
 }
 
 impl Facet {
@@ -32,6 +36,8 @@ impl Facet {
             Facet::Sheet(sheet) => sheet.at(cosine).0,
             Facet::Film(film) => film.reflected(cosine),
             Facet::SheetTransmission(sheet) => sheet.at(cosine).1,
+            Facet::Disney(fresnel) => fresnel.at(cosine),
+            Facet::Passing(eta) => Spectrum::splat(1.0 - fresnel::dielectric(cosine, eta)),
         }
     }
 }
