@@ -308,7 +308,8 @@ fn transforms_that_move_objects_out_of_sight_are_named() {
 fn errors_in_files_are_one_finding() {
     let folder = TestFolder::new();
     folder.write("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
-    folder.write("a.txt", "Group {\n  TriangleMesh { obj_file zero.obj }\n}\n");
+    let camera = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }";
+    folder.write("a.txt", format!("Group {{\n  TriangleMesh {{ obj_file zero.obj }}\n}}\n{camera}\n"));
     let output = folder.expect_exit(2, "check a.txt").out;
     assert!(output.starts_with("error[bad-file]: vertex 0 does not exist"), "{output}");
     assert!(output.contains("zero.obj:4:3") && output.contains("a.txt:2:27"), "{output}");
@@ -327,8 +328,5 @@ fn bright_stars_in_a_dark_picture_are_sound() {
                 Materials { PrincipledMaterial star { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 } }\n";
     folder.write("stars.txt", format!("{head}{group}}}\n"));
     let output = folder.run("check stars.txt --integrator path").out;
-    assert!(!output.contains("too-dark"), "{output}");
-    folder.write("dim.txt", format!("{head}{group}}}\n").replace("Luminance 3", "Luminance 0.001"));
-    let output = folder.run("check dim.txt --integrator path").out;
-    assert!(output.contains("too-dark") || output.contains("one-color"), "{output}");
+    assert!(!output.contains("warning"), "{output}");
 }

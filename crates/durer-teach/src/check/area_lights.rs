@@ -21,6 +21,8 @@ const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new
 /// Positions on the unit square at which an area light is sampled.
 const MIN_CONTRIBUTION: f32 = 0.1;
 const MIN_VISIBLE_SHARE: f32 = 0.03;
+/// Number of rays to a light below which its occlusion is not judged.
+const MIN_RAYS: usize = 40;
 /// Maximum number of triangles of a mesh that is examined as an area light.
 const MAX_PARTS: u32 = 4096;
 /// Cosine between normals above which the triangles of a mesh form a flat area light.
@@ -274,7 +276,10 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
         let (contribution, _) = measure_area_light(scene_probe, number)?;
         let blocker = contribution.blocker?;
         let back = if both { contribution.back } else { 0.0 };
-        if contribution.front_free < 1.0 || contribution.front + back > MIN_VISIBLE_SHARE * contribution.front_free {
+        if contribution.rays < MIN_RAYS
+            || contribution.front_free < 1.0
+            || contribution.front + back > MIN_VISIBLE_SHARE * contribution.front_free
+        {
             return None;
         }
         let whole = scene_probe.is_dark() || lights.len() == 1 && scene_probe.world().lights().is_empty();

@@ -163,7 +163,7 @@ pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
         _ => format!("uniformly {}", vector(first)),
     };
     let empty = scene_probe.hits().next().is_none();
-    if !empty && scene_probe.lacks_photons() {
+    if !empty && scene_probe.lacks_photons() || super::emission::shows_bright_lamp(scene_probe) {
         return Vec::new();
     }
     // Probes can miss small visible objects.

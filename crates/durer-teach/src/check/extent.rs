@@ -6,7 +6,7 @@ use super::scene_probe::SceneProbe;
 use super::shapes::is_ball;
 use super::verdict::LightVerdict;
 use super::visibility::{Visibility, pixels};
-use durer_diag::{Diagnostic, Span};
+use durer_diag::{Diagnostic, Severity, Span};
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Aabb, Vec3, fp};
@@ -16,6 +16,8 @@ use durer_scene::scene::{MatrixOp, Object, ObjectKind};
 const MIN_PIXELS: f32 = 6.0;
 /// Minimum fraction of the picture's larger side that all objects together are meant to span.
 const MIN_SHARE: f32 = 0.04;
+/// The same for objects beside which nothing else is in the picture.
+const MIN_SHARE_ALONE: f32 = 0.065;
 /// Ratios to the typical size above which an object is out of scale, one for harmless objects and
 /// one for objects that spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
@@ -48,20 +50,20 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
         Camera::Orthographic(_) => 0.12,
         _ => 0.0,
     };
-    let fewest = (share.max(MIN_SHARE) * scene_probe.larger_side()).max(MIN_PIXELS);
+    let least = (share.max(MIN_SHARE) * scene_probe.larger_side()).max(MIN_PIXELS);
+    // Without a plane, nothing else is in the picture.
+    let alone = scene_probe.world().objects().iter().all(|object| object.bounds().is_some());
+    let fewest = if alone { least.max(MIN_SHARE_ALONE * scene_probe.larger_side()) } else { least };
+    let severity = if size < least { Severity::Warning } else { Severity::Note };
     if size >= fewest || !empty && !scene_probe.visibilities().contains(&Visibility::Visible) {
         return Vec::new();
     }
     let (span, larger) = (scene_probe.input.scene.camera_span, scene_probe.larger_side());
     let wanted = 0.6 * larger / size.max(1e-6);
-    let diagnostic = Diagnostic::warning(format!(
-        "all objects together are {} pixels wide in a picture of {larger} pixels",
-        number(size)
-    ))
-    .effect(if empty && size < MIN_PIXELS {
-        "at most a few rays hit the objects, so the picture shows little but the background"
-    } else {
-        "the objects are hardly visible"
+    let message = format!("all objects together are {} pixels wide in a picture of {larger} pixels", number(size));
+    let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }.effect(match empty && size < MIN_PIXELS {
+        true => "at most a few rays hit the objects, so the picture shows little but the background",
+        false => "the objects are hardly visible",
     });
     let (diagnostic, field) = match scene_probe.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
@@ -78,7 +80,7 @@ pub(super) fn too_small(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
     };
     let diagnostic = scene_probe.at_value(diagnostic, span, &[field, if field == "angle" { "fov" } else { field }]);
-    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(severity == Severity::Warning)]
 }
 
 /// Reports pictures that show only a tiny part of the objects, for example because an angle is in
