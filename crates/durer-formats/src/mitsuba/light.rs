@@ -255,11 +255,14 @@ impl Reader<'_> {
             Some(InfiniteLight::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let is_fine = picture.height >= FINE_ROWS;
-                // Steps of the picture meet at its poles, where they are sharper than elsewhere.
-                let rows = (4 * picture.height).clamp(4 * FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
+                let is_upright = y.x == 0.0 && y.z == 0.0 && y.y > 0.0;
+                // Steps of the picture meet at its poles, where they are sharper than elsewhere. If
+                // the poles move, more rows are needed.
+                let finer = if is_upright { 1 } else { 4 };
+                let rows = (finer * picture.height).clamp(finer * FINE_ROWS, MAX_ROWS);
                 // The centre of an environment map is +z in Mitsuba and -z in Dürer.
-                if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
+                if is_fine && is_upright && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();
                     let background = &mut self.scene.background;

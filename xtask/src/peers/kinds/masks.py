@@ -31,7 +31,7 @@ def scenes():
         bsdf("blendbsdf", diffuse(0.8, 0.2, 0.1), METAL, weight=0.3), bsdf("blendbsdf", METAL, diffuse(0.8, 0.2, 0.1), weight=0.2)))
     yield "blend of matte and mirror", room(two_balls(
         bsdf("blendbsdf", diffuse(0.8, 0.2, 0.1), bsdf("conductor"), weight=0.3), bsdf("blendbsdf", diffuse(0.8), bsdf("conductor"), weight=0.7))), dict(
-            mitsuba_is_wrong="a blend loses light that its smooth part mirrors")
+            mitsuba_is_wrong="a blend adds the density of its matte part to the probability of its mirror; a black matte part makes the mirror brighter")
     half = bsdf("blendbsdf", diffuse(0.2, 0.5, 0.7), bsdf("null"), weight=0.5)
     yield "blend with null", room(behind, rectangle(half, size=(1.0, 0.7), at=(0, 0.8, 0.4)))
     yield "checkered blend", room(lamp(), card(bsdf("blendbsdf", diffuse(0.8, 0.2, 0.1), diffuse(0.1, 0.2, 0.8), weight=texture(

@@ -34,7 +34,7 @@ def surfaces(first, second):
 
 def scenes():
     yield "light, black body, 2800 K", light(spectrum("blackbody", temperature=2800.0)), SPECTRAL
-    yield "light, black body, 3500 K", light(spectrum("blackbody", temperature=3500.0)), SPECTRAL
+    yield "light, black body, 3500 K", light(spectrum("blackbody", temperature=3500.0)), SPECTRAL | dict(warns=("the picture is mostly white", "there is too much light"))
     yield "light, regular", light(spectrum("regular", values="1, 2, 3, 5, 8, 7, 4", **RANGE)), SPECTRAL
     yield "light, irregular", light(spectrum("irregular", wavelengths=NODES, values="7, 6, 2, 4, 5")), SPECTRAL
     yield "light, d65", light(spectrum("d65", scale=5.0)), SPECTRAL
