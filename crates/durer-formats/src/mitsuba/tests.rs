@@ -91,7 +91,9 @@ fn variables_includes_and_old_names_are_read() {
     assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let Material::Principled(layers) = material(&scene) else { panic!() };
-    assert_eq!((layers.base_color.z, layers.specular_ior), (0.3, 1.6));
+    assert_eq!(layers.specular_ior, 1.6);
+    // Mitsuba approximates the light that plastic reflects inside, to within 0.1 %.
+    assert!((layers.base_color.z / 0.3 - 1.0).abs() < 1e-3, "{}", layers.base_color.z);
     assert!(format!("{:?}", objects(&scene)[0].node).contains("Vec3(1.0, 0.0, 0.0)"));
 }
 

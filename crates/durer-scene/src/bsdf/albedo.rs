@@ -316,8 +316,9 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
 /// given cosine, or the share that is not lost if `all` is set. Light that is scattered several
 /// times is lost.
 pub fn single_share(surface: Ggx, cosine: f32, eta: f32, all: bool) -> f32 {
-    // Total internal reflection at a nearly smooth boundary starts at a sharp angle.
-    let many = if eta < 1.0 { 2 * POINTS } else { POINTS / 4 };
+    // Total internal reflection at a nearly smooth boundary starts at a sharp angle, and many of
+    // Beckmann's facets are hidden.
+    let many = if eta < 1.0 || surface.facets == Facets::Beckmann { 2 * POINTS } else { POINTS / 4 };
     let (ggx, wo) = (surface.clamped(), direction(cosine));
     let sum: f64 = points_of(many).map(|u| f64::from(facet_weight(ggx, wo, eta, u, all))).sum();
     (sum / f64::from(many)) as f32
