@@ -245,7 +245,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {
             let eta = if inside { 1.0 / own.definition.specular_ior } else { own.definition.specular_ior };
-            let view = durer_scene::bsdf::layers::View { lanes: &lanes, wo, normal: Vec3::Z, inside, eta };
+            let view = durer_scene::bsdf::view::View { lanes: &lanes, wo, normal: Vec3::Z, inside, eta };
             durer_scene::bsdf::layers::push_lobes(&mut Default::default(), 1.0, &own.parameters, &own.tables, view);
         }
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");

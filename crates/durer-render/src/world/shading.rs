@@ -4,10 +4,11 @@ use super::{Geometry, Material, Object, Phong, SurfaceInteraction, WeightedMater
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use crate::world::material::Emission;
-use durer_scene::bsdf::layers::{self, View};
+use durer_scene::bsdf::layers;
 use durer_scene::bsdf::lobe::blinn::Blinn;
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, StraightTransmission};
+use durer_scene::bsdf::view::View;
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::Pattern;
 use durer_scene::material::PrincipledMaterial;

@@ -7,12 +7,12 @@
 
 use super::Bsdf;
 use super::fresnel::{DisneyFresnel, ratio_squared};
-use super::layers::View;
 use super::lobe::diffuse::DiffuseTransmission;
 use super::lobe::disney::{DisneyCoat, DisneyDiffuse};
 use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
+use super::view::View;
 use crate::material::Parameters;
 use crate::material::principled::{Facets, Walls};
 use crate::math::{LUMINANCE, Vec3};

@@ -18,11 +18,12 @@ use super::lobe::glass::{Mirror, Refraction, StraightTransmission};
 use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
+use super::view::View;
 use crate::describe::FileName;
 use crate::material::principled::{Facets, Layering, Switch, Walls};
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec3, fp};
-use crate::spectrum::{Curve, Lanes, Spectrum};
+use crate::spectrum::{Curve, Spectrum};
 use std::sync::Arc;
 
 /// Albedo tables of a principled material and the measured spectrum of its base. The tables are
@@ -140,22 +141,6 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
 /// Returns the quotient `shares / of` for each lane, or 1 where `of` is 0.
 fn ratios(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
-}
-
-/// View of a surface point for which the lobes of a principled material are built. The view
-/// consists of a direction, lanes and the relative index of refraction.
-#[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
-    /// RGB lanes or wavelengths in which light is represented.
-    pub lanes: &'a Lanes,
-    /// Local direction to the viewer.
-    pub wo: Vec3,
-    /// Local normal of the diffuse lobes; see [`Diffuse::normal`].
-    pub normal: Vec3,
-    /// True if the point is seen from inside.
-    pub inside: bool,
-    /// Index of refraction behind the boundary, relative to the index in front of it.
-    pub eta: f32,
 }
 
 /// Adds the lobes of a material with `parameters` to `bsdf`, each scaled by `factor`.

@@ -15,6 +15,7 @@ pub mod microfacet;
 #[cfg(test)]
 mod tests;
 pub mod validation;
+pub mod view;
 pub mod warp;
 
 use crate::math::{Vec2, Vec3};

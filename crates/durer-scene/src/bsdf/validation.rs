@@ -10,7 +10,7 @@ use super::lobe::hair::Fibre;
 use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
-use super::{Bsdf, BsdfSample, Lobe, Scatter, Tables, fresnel, layers, warp};
+use super::{Bsdf, BsdfSample, Lobe, Scatter, Tables, fresnel, layers, view, warp};
 use crate::material::principled::Walls;
 use crate::material::{HairMaterial, Parameters, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
@@ -274,7 +274,7 @@ pub(super) fn bsdf_from_outside<'a>(here: &Parameters, tables: &'a Tables, wo: V
 }
 
 fn bsdf_for<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: bool, eta: f32) -> Bsdf<'a> {
-    let view = layers::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside, eta };
+    let view = view::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside, eta };
     let mut bsdf = Bsdf::default();
     layers::push_lobes(&mut bsdf, 1.0, here, tables, view);
     bsdf
