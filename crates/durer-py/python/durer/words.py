@@ -995,6 +995,8 @@ class PhongMaterial(Material):
 class PrincipledMaterial(Material):
     """Layered material with the parameters of OpenPBR Surface: fuzz over a coat over metal, glass or a diffuse base.
 
+    layering: `openPbr`, `disney`; default openPbr. `openPbr`: each layer gets the light that the layers above let through. `disney`: the sum of the lobes of Disney's material of 2015, as in Mitsuba's `principled` and, with thin walls, `principledthin`; it does not conserve energy. Its coat has an index of 1.5 and a quarter of `coatWeight`; its sheen is the fuzz. It ignores the roughness of the fuzz, films, subsurface scattering in solids, and all colours but `baseColor` and `fuzzColor`.
+
     base_weight: number, from 0 to 1; default 1. Strength of the base, from 0 to 1; scales the colours of the diffuse base and the metal.
 
     base_weight_texture: path. Texture that multiplies `baseWeight`. Textures of scalars use the red channel, or the channel after a colon, for example `file.png:g`.
@@ -1013,6 +1015,8 @@ class PrincipledMaterial(Material):
 
     base_metalness_texture: path. Texture that multiplies `baseMetalness`.
 
+    base_flatness: number, from 0 to 1; default 0. With `layering disney`: share of the diffuse base that is replaced by an approximation of subsurface scattering, from 0 to 1.
+
     specular_weight: number, 0 or more; default 1. Factor on the reflectance at normal incidence, usually from 0 to 1.
 
     specular_weight_texture: path. Texture that multiplies the reflection equally at all angles.
@@ -1020,6 +1024,8 @@ class PrincipledMaterial(Material):
     specular_color: three numbers; default 1 1 1. Tint of the reflection, or for metal the colour near grazing angles.
 
     specular_color_texture: path. Texture that multiplies `specularColor`, read as sRGB.
+
+    specular_tint: number, from 0 to 1; default 0. With `layering disney`: share of the reflection of a dielectric that has the hue of `baseColor`, from 0 to 1.
 
     specular_roughness: number, from 0 to 1; default 0.3. Roughness of the surface, from 0 (a mirror) to 1; its square is GGX's alpha.
 
@@ -1139,7 +1145,13 @@ class PrincipledMaterial(Material):
 
     bump_height: number; default 0.01. Height difference between white and black in the bump map, in world units; negative if white is deeper.
 
-    normal_bending: `on`, `off`; default on. `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
+    normal_green: `v`, `cross`; default v. Direction of green in the normal map. `v`: along increasing v. `cross`: along the cross product of the normal and the direction of increasing u, which transforms of the texture do not turn, as in Mitsuba.
+
+    normal_bending: `on`, `off`, `turned`; default on. `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba. `turned`: like `off`, but first turns mapped normals that face away half around the interpolated normal, as Mitsuba's `flip_invalid_normals` does.
+
+    normal_backs: `turned`, `mirrored`; default turned. `turned`: the back of the surface has the bumps of the front, seen from behind. `mirrored`: it has the mapped normals of the front, mirrored at the surface, as with Mitsuba's `twosided` around a map.
+
+    normal_shadowing: `on`, `off`; default off. `on`: points with mapped normals reflect less light from grazing directions, as facets hide each other, so that their shading fades before the light sets. Mitsuba does so.
 
     opacity: number, from 0 to 1; default 1. Fraction of the surface that is present, from 0 to 1; the remaining light passes through unchanged.
 
@@ -1155,6 +1167,7 @@ class PrincipledMaterial(Material):
     def __init__(
         self,
         *,
+        layering: Optional[Literal["openPbr", "disney"]] = None,
         base_weight: Optional[float] = None,
         base_weight_texture: Optional[str] = None,
         base_color: Optional[npt.ArrayLike] = None,
@@ -1164,10 +1177,12 @@ class PrincipledMaterial(Material):
         base_diffuse_roughness_texture: Optional[str] = None,
         base_metalness: Optional[float] = None,
         base_metalness_texture: Optional[str] = None,
+        base_flatness: Optional[float] = None,
         specular_weight: Optional[float] = None,
         specular_weight_texture: Optional[str] = None,
         specular_color: Optional[npt.ArrayLike] = None,
         specular_color_texture: Optional[str] = None,
+        specular_tint: Optional[float] = None,
         specular_roughness: Optional[float] = None,
         specular_roughness_texture: Optional[str] = None,
         metallic_roughness_texture: Optional[str] = None,
@@ -1227,7 +1242,10 @@ class PrincipledMaterial(Material):
         normal_texture: Optional[str] = None,
         bump_texture: Optional[str] = None,
         bump_height: Optional[float] = None,
-        normal_bending: Optional[Literal["on", "off"]] = None,
+        normal_green: Optional[Literal["v", "cross"]] = None,
+        normal_bending: Optional[Literal["on", "off", "turned"]] = None,
+        normal_backs: Optional[Literal["turned", "mirrored"]] = None,
+        normal_shadowing: Optional[Literal["on", "off"]] = None,
         opacity: Optional[float] = None,
         opacity_texture: Optional[str] = None,
         opacity_cutoff: Optional[float] = None,
@@ -1235,6 +1253,7 @@ class PrincipledMaterial(Material):
         backs: Optional[Literal["shown", "hidden", "black"]] = None,
     ) -> None:
         super().__init__("PrincipledMaterial", [
+            ("layering", layering),
             ("baseWeight", base_weight),
             ("baseWeightTexture", base_weight_texture),
             ("baseColor", base_color),
@@ -1244,10 +1263,12 @@ class PrincipledMaterial(Material):
             ("baseDiffuseRoughnessTexture", base_diffuse_roughness_texture),
             ("baseMetalness", base_metalness),
             ("baseMetalnessTexture", base_metalness_texture),
+            ("baseFlatness", base_flatness),
             ("specularWeight", specular_weight),
             ("specularWeightTexture", specular_weight_texture),
             ("specularColor", specular_color),
             ("specularColorTexture", specular_color_texture),
+            ("specularTint", specular_tint),
             ("specularRoughness", specular_roughness),
             ("specularRoughnessTexture", specular_roughness_texture),
             ("metallicRoughnessTexture", metallic_roughness_texture),
@@ -1307,7 +1328,10 @@ class PrincipledMaterial(Material):
             ("normalTexture", normal_texture),
             ("bumpTexture", bump_texture),
             ("bumpHeight", bump_height),
+            ("normalGreen", normal_green),
             ("normalBending", normal_bending),
+            ("normalBacks", normal_backs),
+            ("normalShadowing", normal_shadowing),
             ("opacity", opacity),
             ("opacityTexture", opacity_texture),
             ("opacityCutoff", opacity_cutoff),
