@@ -32,8 +32,8 @@ fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
     let commands = lines.filter_map(|line| line.strip_prefix("cargo ").unwrap_or(line).strip_prefix("durer "));
-    // A server runs until it is stopped, `--device gpu` needs a graphics processor, and `--terminal`
-    // a terminal. All have their own tests.
+    // A server runs until it is stopped, `--device gpu` needs a graphics processor, and
+    // `--terminal` needs a terminal. All have their own tests.
     let has_own_tests = |command: &str| {
         command.starts_with("live ") || command.contains("--device gpu") || command.contains("--terminal")
     };

@@ -27,7 +27,8 @@ pub fn encode(pixels: &[[u8; 3]], width: usize, true_color: bool) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Returns the number of the colour nearest to a pixel among the 6 x 6 x 6 colours and the 24 greys.
+/// Returns the number of the colour nearest to a pixel among the 6 x 6 x 6 colours and the 24
+/// greys.
 fn index([r, g, b]: [u8; 3]) -> u8 {
     let distance = |a: [u8; 3]| -> u32 { [r, g, b].iter().zip(a).map(|(&x, y)| u32::from(x.abs_diff(y)).pow(2)).sum() };
     let level = |x: u8| (0..6).min_by_key(|&i: &u8| LEVELS[usize::from(i)].abs_diff(x)).unwrap_or(0);

@@ -113,7 +113,8 @@ fn answers_sixel() -> bool {
         tcsetattr(&terminal, OptionalActions::Now, &raw).ok()?;
         let mut answer = Vec::new();
         let _ = rustix::io::write(&terminal, b"\x1b[c");
-        // Terminals answer at once; over a slow network, there is no answer in time and no graphics.
+        // Terminals answer at once. Over a slow network, the answer comes too late, and half blocks
+        // are drawn.
         let limit = Timespec { tv_sec: 0, tv_nsec: 300_000_000 };
         let mut byte = [0];
         while answer.len() < 64

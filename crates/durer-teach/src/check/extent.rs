@@ -16,7 +16,7 @@ use durer_scene::scene::{MatrixOp, Object, ObjectKind};
 const MIN_PIXELS: f32 = 6.0;
 /// Minimum fraction of the picture's larger side that all objects together are meant to span.
 const MIN_SHARE: f32 = 0.04;
-/// The same for objects beside which nothing else is in the picture.
+/// Minimum fraction that the objects span if the picture shows nothing else.
 const MIN_SHARE_ALONE: f32 = 0.065;
 /// Ratios to the typical size above which an object is out of scale, one for harmless objects and
 /// one for objects that spoil the picture.

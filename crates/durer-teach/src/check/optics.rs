@@ -14,7 +14,8 @@ use durer_scene::spectrum::ColorMode;
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const MAX_MEAN_FREE_PATH: f32 = 30.0;
-/// The same for the mean free path of the colour channel that is scattered most.
+/// Limit for the mean free path of the colour channel that is scattered most, as a multiple of the
+/// thickness.
 const MAX_LEAST_MEAN_FREE_PATH: f32 = 3.0;
 /// Minimum deviation of the index of refraction from 1 for which light is visibly bent.
 const MIN_IOR_DIFFERENCE: f32 = 1e-3;

@@ -37,7 +37,7 @@ fn camera_outside(scene_probe: &SceneProbe) -> Option<Finding> {
         return None;
     }
     let (light, front) =
-        lamps(scene_probe).into_iter().find_map(|(name, place)| Some((name, wall(scene_probe, place)?)))?;
+        lights(scene_probe).into_iter().find_map(|(name, place)| Some((name, wall(scene_probe, place)?)))?;
     let message = format!(
         "the camera is outside the closed room that the {light} illuminates: the {} is in front of the camera",
         scene_probe.object(front)
@@ -54,7 +54,7 @@ fn camera_outside(scene_probe: &SceneProbe) -> Option<Finding> {
 }
 
 /// Returns the names of the lights, each with a point from which its light spreads.
-fn lamps(scene_probe: &SceneProbe) -> Vec<(String, Vec3)> {
+fn lights(scene_probe: &SceneProbe) -> Vec<(String, Vec3)> {
     let (world, size) = (scene_probe.world(), scene_probe.world().bounds().size().max_element());
     let surfaces = super::area_lights::emissive_objects(scene_probe).into_iter().filter_map(|(number, _)| {
         let object = &world.objects()[number as usize];
@@ -69,9 +69,9 @@ fn lamps(scene_probe: &SceneProbe) -> Vec<(String, Vec3)> {
     surfaces.chain(points).collect()
 }
 
-/// Returns the wall between the camera and a lamp if the lamp is in a closed room with something
+/// Returns the wall between the camera and a light if the light is in a closed room with something
 /// that the camera does not see.
-fn wall(scene_probe: &SceneProbe, lamp: Vec3) -> Option<u32> {
+fn wall(scene_probe: &SceneProbe, light: Vec3) -> Option<u32> {
     let (world, eye) = (scene_probe.world(), scene_probe.world().camera().pose().center);
     let mut around: Vec<Vec3> = Vec::new();
     let mut others = Vec::new();
@@ -79,14 +79,14 @@ fn wall(scene_probe: &SceneProbe, lamp: Vec3) -> Option<u32> {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
         let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
         let r = (1.0 - z * z).sqrt();
-        let ray = Ray::new(lamp, Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32));
+        let ray = Ray::new(light, Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32));
         let hit = world.closest(&ray, &mut ())?;
         world.objects()[hit.object as usize].bounds()?;
         around.push(ray.at(hit.t));
         others.push(hit.object);
     }
-    let to_lamp = Ray { t_max: 1.0 - 1e-3, ..Ray::new(eye, lamp - eye) };
-    let front = world.closest(&to_lamp, &mut ())?.object;
+    let to_light = Ray { t_max: 1.0 - 1e-3, ..Ray::new(eye, light - eye) };
+    let front = world.closest(&to_light, &mut ())?.object;
     let is_unseen = |object: &u32| {
         let object = *object as usize;
         matches!(scene_probe.visibilities()[object], Visibility::Hidden(_))
