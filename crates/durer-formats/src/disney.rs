@@ -9,7 +9,8 @@
 //! BRDF to a BSDF*, 2015.
 
 use durer_scene::bsdf::albedo::single_means;
-use durer_scene::bsdf::fresnel::ior_of_reflectance;
+use durer_scene::bsdf::fresnel::{ior_of_reflectance, ratio_squared};
+use durer_scene::bsdf::lobe::disney;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Layering, Walls};
 use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
@@ -24,20 +25,6 @@ struct DirectionPair {
     cosines: [f32; 2],
     /// Cosine of half the angle between the two directions.
     half: f32,
-}
-
-impl DirectionPair {
-    /// Returns the value of the diffuse base, relative to a Lambertian surface.
-    fn diffuse(&self, roughness: f32) -> f32 {
-        let [out, into] = self.cosines.map(schlick);
-        let retro = 2.0 * roughness * self.half * self.half;
-        (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
-    }
-}
-
-fn schlick(cosine: f32) -> f32 {
-    let m = (1.0 - cosine).clamp(0.0, 1.0);
-    m * m * m * m * m
 }
 
 /// Returns the mean of `value` over all pairs of directions, weighted by their cosines.
@@ -56,7 +43,7 @@ fn means(value: impl Fn(&DirectionPair) -> f32) -> f32 {
 
 /// Returns the reflectance of a white diffuse base of Disney's material.
 pub(super) fn diffuse_albedo(roughness: f32) -> f32 {
-    means(|pair| pair.diffuse(roughness))
+    means(|pair| disney::diffuse(pair.cosines, pair.half, roughness))
 }
 
 /// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and comes back
@@ -107,8 +94,8 @@ pub(super) fn as_layers(m: &PrincipledMaterial) -> PrincipledMaterial {
         layers.base_color = diffuse_albedo(m.specular_roughness) * m.base_color;
         layers.subsurface_color = layers.base_color;
         // Disney's sheet has a single surface.
-        let root = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
-        layers.specular_ior = ior_of_reflectance(root * root / (2.0 - root * root));
+        let r = ratio_squared(m.specular_ior);
+        layers.specular_ior = ior_of_reflectance(r / (2.0 - r));
     } else if m.base_metalness_texture.is_none() {
         let base = DiffuseConverter::new(m.specular_ior, m.specular_roughness).base(m.base_color);
         layers.base_color = m.base_color.lerp(base, 1.0 - m.base_metalness);

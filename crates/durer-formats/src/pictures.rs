@@ -267,18 +267,19 @@ pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)
 
 /// Encodes a picture as an 8-bit PNG.
 pub(super) fn as_png(image: Image, transfer: Transfer) -> Option<Arc<[u8]>> {
-    let mut bytes = Vec::new();
-    let format = image::format_for("a.png").ok()?;
-    let options = WriteOptions { display: transfer.into(), ..WriteOptions::default() };
-    format.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
-    Some(bytes.into())
+    encoded("a.png", image, transfer)
 }
 
 /// Encodes a picture as a PFM picture, which keeps single precision.
 fn as_pfm(image: Image) -> Option<Arc<[u8]>> {
+    encoded("a.pfm", image, Transfer::Linear)
+}
+
+/// Encodes a picture in the format that the extension of `name` selects.
+fn encoded(name: &str, image: Image, transfer: Transfer) -> Option<Arc<[u8]>> {
     let mut bytes = Vec::new();
-    let format = image::format_for("a.pfm").ok()?;
-    format.write(&[Layer::data("", image)], &WriteOptions::default(), &mut bytes).ok()?;
+    let options = WriteOptions { display: transfer.into(), ..WriteOptions::default() };
+    image::format_for(name).ok()?.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
     Some(bytes.into())
 }
 

@@ -5,7 +5,7 @@ use super::aim::{BeamMiss, beam_coverage, hit_points};
 use super::finding::{Finding, MAX_FINDINGS, number, percent, vector};
 use super::lights::{description, no_contribution, none_contributes};
 use super::scene_probe::SceneProbe;
-use super::shapes::{point, spot};
+use super::shapes::{point, spot, spread_direction};
 use durer_diag::Diagnostic;
 use durer_scene::light::{Illuminate as _, Light, PhotometricLight};
 use durer_scene::math::{Vec3, fp};
@@ -168,12 +168,7 @@ pub(super) fn inner_angle(scene_probe: &SceneProbe) -> Vec<Finding> {
 fn too_close(scene_probe: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let point = point(&scene_probe.world().lights()[light])?;
     let world = scene_probe.world();
-    let steps = (0..26).map(|i| {
-        let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
-        let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / 26.0;
-        let r = (1.0 - z * z).sqrt();
-        Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
-    });
+    let steps = (0..26).map(|i| spread_direction(i, 26));
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
     let rays = axes.into_iter().chain(steps).map(|dir| durer_scene::math::Ray::new(point.position, dir));
     let hits = rays.filter_map(|ray| world.closest(&ray, &mut ()));

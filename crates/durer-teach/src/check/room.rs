@@ -3,13 +3,14 @@
 use super::containment::containing_objects;
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
+use super::shapes::spread_direction;
 use super::verdict::MAX_LIGHTS;
 use super::visibility::{Visibility, has_eye};
 use durer_diag::Diagnostic;
 use durer_render::world::emitters::emitter_of;
 use durer_scene::camera::Projection;
 use durer_scene::light::Illuminate as _;
-use durer_scene::math::{Aabb, Ray, Vec2, Vec3, fp};
+use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
 /// Number of directions in which a room must have walls.
 const DIRECTIONS: u32 = 64;
@@ -76,10 +77,7 @@ fn wall(scene_probe: &SceneProbe, light: Vec3) -> Option<u32> {
     let mut around: Vec<Vec3> = Vec::new();
     let mut others = Vec::new();
     for i in 0..DIRECTIONS {
-        let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
-        let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
-        let r = (1.0 - z * z).sqrt();
-        let ray = Ray::new(light, Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32));
+        let ray = Ray::new(light, spread_direction(i, DIRECTIONS));
         let hit = world.closest(&ray, &mut ())?;
         world.objects()[hit.object as usize].bounds()?;
         around.push(ray.at(hit.t));

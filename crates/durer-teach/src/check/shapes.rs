@@ -2,7 +2,7 @@
 
 use durer_render::world::{Geometry, Object};
 use durer_scene::light::{Light, PointLight, SpotLight};
-use durer_scene::math::Vec3;
+use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::{Plane, Primitive, Shape as _};
 
 /// Returns the shape of an object if it is a single primitive.
@@ -38,4 +38,13 @@ pub(super) fn point(light: &Light) -> Option<&PointLight> {
 /// Returns a light if it is a spotlight. Only spotlights have a cone in the scene file.
 pub(super) fn spot(light: &Light) -> Option<&SpotLight> {
     if let Light::Spot(spot) = light { Some(spot) } else { None }
+}
+
+/// Returns direction `i` of `count` directions that are spread evenly over the sphere. Each is
+/// turned by the golden angle from the one before.
+pub(super) fn spread_direction(i: u32, count: u32) -> Vec3 {
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
+    let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(count);
+    let r = (1.0 - z * z).sqrt();
+    Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
 }

@@ -237,7 +237,7 @@ fn mapped_normals_that_face_away_are_black_or_turned() {
     let folder = folder("tilt", &[("u.ppm", 4, &|_, _| [230, 128, 204]), ("v.ppm", 4, &|_, _| [128, 230, 204])]);
     let mesh = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
     std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
-    // The same wall with the picture upside down.
+    // Wall on which the picture is upside down.
     std::fs::write(
         folder.path().join("down.obj"),
         mesh.replace("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1", "vt 0 1\nvt 1 1\nvt 1 0\nvt 0 0"),

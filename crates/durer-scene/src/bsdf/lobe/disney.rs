@@ -23,16 +23,24 @@ pub struct DisneyDiffuse {
     pub flatness: f32,
 }
 
+/// Returns the value of the diffuse base without subsurface scattering, relative to a Lambertian
+/// surface, for the cosines of the two directions and of half the angle between them.
+pub fn diffuse(cosines: [f32; 2], half: f32, roughness: f32) -> f32 {
+    let [out, into] = cosines.map(fresnel::schlick_weight);
+    let retro = 2.0 * roughness * half * half;
+    (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
+}
+
 impl DisneyDiffuse {
-    /// Returns the value of the base relative to a Lambertian surface, for the cosines of the two
-    /// directions and of half the angle between them.
+    /// Returns the value of the base relative to a Lambertian surface. The arguments are those of
+    /// [`diffuse`].
     fn base(&self, cosines: [f32; 2], half: f32) -> f32 {
-        let [out, into] = cosines.map(fresnel::schlick_weight);
-        let retro = 2.0 * self.roughness * half * half;
-        let plain = (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0));
+        let plain = diffuse(cosines, half, self.roughness);
         if self.flatness == 0.0 {
             return plain;
         }
+        let [out, into] = cosines.map(fresnel::schlick_weight);
+        let retro = 2.0 * self.roughness * half * half;
         let flat = |weight: f32| 1.0 + weight * (0.5 * retro - 1.0);
         let [a, b] = cosines;
         let subsurface = 1.25 * (flat(out) * flat(into) * (1.0 / (a + b).max(1e-6) - 0.5) + 0.5);
