@@ -125,7 +125,7 @@ impl Pictures<'_> {
         self.linear(picture, at, decode, |texel| Color::splat(change(texel)))
     }
 
-    /// Version of [`Pictures::changed`] that first interpolates `finer` texels along each side of a
+    /// Version of [`Pictures::linear`] that first interpolates `finer` texels along each side of a
     /// texel, as far as the picture stays below [`MOST_REFINED`] texels.
     pub fn refined(
         &self,
@@ -133,13 +133,13 @@ impl Pictures<'_> {
         at: Span,
         decode: fn(u8) -> f32,
         finer: u32,
-        change: impl Fn(Color) -> f32,
+        change: impl Fn(Color) -> Color,
     ) -> Option<TextureImage> {
         let (path, image) = self.source(picture, at, decode)?;
         let texels = u64::from(image.width) * u64::from(image.height);
         let finer = (1..=finer).rev().find(|n| texels * u64::from(n * n) <= MOST_REFINED).unwrap_or(1);
         if finer == 1 || picture.mapping.nearest {
-            return self.changed(picture, at, decode, change);
+            return self.linear(picture, at, decode, change);
         }
         let (width, height) = (image.width * finer, image.height * finer);
         let mut pixels = Vec::with_capacity((width * height) as usize);
@@ -155,7 +155,7 @@ impl Pictures<'_> {
                 image.get(x, y).unwrap_or_default()
             };
             let row = |j: i64| texel(i, j).lerp(texel(i + 1, j), a);
-            pixels.push(Color::splat(change(row(j).lerp(row(j + 1), b)).clamp(0.0, 1.0)));
+            pixels.push(change(row(j).lerp(row(j + 1), b)).clamp(Color::ZERO, Color::ONE));
         }
         let bytes = as_pfm(Image::from_pixels(width, height, pixels).ok()?)?;
         let path = format!("{path}#{}.pfm", &Digest::of(&bytes).to_string()[..12]);
@@ -253,15 +253,16 @@ pub(super) fn asset(scene: &mut Scene, picture: TextureImage, span: Span) -> Fil
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let (bytes, most) = from_four_texels([one, other, other, one])?;
     let PictureBytes::Memory(_, bytes) = bytes else { return None };
-    Some((PictureBytes::Memory(format!("checkerboard-{other}-{one}.png"), bytes), most))
+    Some((PictureBytes::Memory(format!("checkerboard-{other}-{one}.pfm"), bytes), most))
 }
 
 /// Returns a picture with four texels, given in rows from the top, and the factor for its values.
 pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
     let pixels = colors.map(|color| color / most);
-    let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;
-    let name = format!("corners-{}.png", &Digest::of(format!("{colors:?}").as_bytes()).to_string()[..12]);
+    // Eight bits would round the colours.
+    let bytes = as_pfm(Image::from_pixels(2, 2, pixels.to_vec()).ok()?)?;
+    let name = format!("corners-{}.pfm", &Digest::of(format!("{colors:?}").as_bytes()).to_string()[..12]);
     Some((PictureBytes::Memory(name, bytes), most))
 }
 

@@ -17,7 +17,7 @@ use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
 use durer_scene::material::principled::{
-    Backs, Facets, NormalBacks, NormalBending, NormalGreen, Surroundings, Switch, Walls,
+    Backs, BumpGradient, Facets, NormalBacks, NormalBending, NormalGreen, Surroundings, Switch, Walls,
 };
 use durer_scene::material::two_sided::TwoSided;
 use durer_scene::material::{HairMaterial, PatternMaterial, PrincipledMaterial};
@@ -49,6 +49,9 @@ const BSDFS: [&str; 18] = [
 
 /// Index of refraction of air.
 const AIR: f32 = 1.000277;
+
+/// Number of texels that are interpolated along each side of a texel before colours are converted.
+const FINER: u32 = 8;
 
 /// Maximum number of materials that one material can consist of, counting repeated ones each time.
 const MAX_PARTS: usize = 4096;
@@ -213,7 +216,7 @@ impl Reader<'_> {
             self.report.unsupported_once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
         Rc::new(inner.changed(&|m| {
-            (m.bump_texture, m.bump_height) = (picture.clone(), height);
+            (m.bump_texture, m.bump_height, m.bump_gradient) = (picture.clone(), height, BumpGradient::Exact);
             (m.normal_bending, m.normal_shadowing) = (bending, shadowing);
         }))
     }
@@ -368,11 +371,12 @@ impl Reader<'_> {
         match picture.filter(|_| nonlinear) {
             Some(picture) => {
                 let at = plugin.span("diffuse_reflectance");
-                let faded =
-                    self.pictures().joined([&picture, &picture], at, |texel, _| texel.map(|x| boundary.faded(x)));
-                if let Some((picture, scale)) = faded {
+                // Mitsuba converts the interpolated colours, so convert a finer picture.
+                let scale = m.base_color;
+                let convert = |color: Vec3| (scale * color).map(|x| boundary.faded(x.min(1.0)));
+                if let Some(picture) = self.pictures().refined(&picture, at, decode_srgb, FINER, convert) {
                     m.base_color_texture = Some(asset(&mut self.scene, picture, at));
-                    m.base_color = Vec3::splat(scale * boundary.below());
+                    m.base_color = Vec3::splat(boundary.below());
                 }
             }
             None if nonlinear => m.base_color = boundary.below() * m.base_color.map(|color| boundary.faded(color)),
@@ -415,6 +419,7 @@ impl Reader<'_> {
             MaterialDef::Null => return None,
             MaterialDef::Principled(layers) => {
                 let mut layers = layers.clone();
+                layers.smooth_shadows = Switch::Off;
                 let most = emitter.map_or(0.0, |emitter| emitter.color.max_element());
                 if let Some(emitter) = emitter.filter(|_| most > 0.0) {
                     (layers.emission_luminance, layers.emission_color) = (most, emitter.color / most);

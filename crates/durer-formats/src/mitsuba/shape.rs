@@ -254,6 +254,7 @@ impl Reader<'_> {
         // flip v in PLY files.
         let over = plugin.boolean(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = to_world.matrix3.determinant() < 0.0;
+        let uneven = uneven(&to_world.matrix3);
         let input = self.input;
         let colored = self.has_texture(plugin, &["mesh_attribute"]);
         let leaning = !is_obj && self.has_normal_map(plugin);
@@ -265,6 +266,7 @@ impl Reader<'_> {
             (leaning, "#leaning"),
         ];
         let whole = number.map_or(path.clone(), |number| format!("{path}#{number}"));
+        let whole = uneven.map_or(whole.clone(), |matrix| format!("{whole}#{:?}", matrix.to_cols_array()));
         let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
         self.mesh(plugin, &key, to_world, || {
             let mut data = match number {
@@ -282,7 +284,11 @@ impl Reader<'_> {
             if !flat && data.triangle_normals.is_empty() {
                 // Vertices at the same position are not merged if their texture coordinates differ.
                 let uvs = std::mem::take(&mut data.triangle_uvs);
-                smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
+                let part = |i: usize, k: usize| Some(uvs.get(i).map_or(0, |uvs| uvs[k]));
+                match uneven {
+                    Some(matrix) => smoothed_in_world(&mut data, &matrix, part),
+                    None => smoothed(&mut data, part),
+                }
                 data.triangle_uvs = uvs;
             }
             // Keep vertex colours only if a texture uses them. Convert the vertex colours of PLY
@@ -334,4 +340,26 @@ impl Reader<'_> {
         };
         Some((self.scene.add_mesh(&name, data?, plugin.at), to_world))
     }
+}
+
+/// Returns the matrix if it does not scale equally in all directions. Angles between edges then
+/// differ in the world, and so do normals that are weighted by angles.
+fn uneven(matrix: &DMat3) -> Option<DMat3> {
+    let square = matrix.transpose() * *matrix;
+    let scale = square.x_axis.x;
+    (!square.abs_diff_eq(DMat3::from_diagonal(DVec3::splat(scale)), 1e-6 * scale)).then_some(*matrix)
+}
+
+/// Version of [`smoothed`] that computes the normals in the world, to which a matrix leads.
+fn smoothed_in_world(data: &mut MeshData, matrix: &DMat3, part: impl Fn(usize, usize) -> Option<u32>) {
+    let (own, before) = (data.positions.clone(), data.normals.len());
+    data.positions.iter_mut().for_each(|p| *p = (*matrix * p.as_dvec3()).as_vec3());
+    smoothed(data, part);
+    // The inverse transpose leads from normals of the object to normals in the world. The faces of
+    // mirrored meshes were turned around before.
+    let back = matrix.determinant().signum() * matrix.transpose();
+    for n in &mut data.normals[before..] {
+        *n = (back * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3();
+    }
+    data.positions = own;
 }

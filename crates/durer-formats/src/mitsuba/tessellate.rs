@@ -75,9 +75,10 @@ pub(super) fn disk() -> MeshData {
     data
 }
 
-/// Returns a sphere of triangles around the origin, with its poles on the z axis.
+/// Returns a sphere of triangles around the origin, with its poles on the z axis. As in Mitsuba, v
+/// is 0 at the pole on the side of +z.
 pub(super) fn sphere(radius: f32) -> MeshData {
-    revolution::sphere(f64::from(radius), [-radius, radius], 360.0)
+    with_flipped_v(revolution::sphere(f64::from(radius), [-radius, radius], 360.0))
 }
 
 /// Returns an open cylinder of length 1 around the z axis. As in Mitsuba, v = 0 is the upper edge

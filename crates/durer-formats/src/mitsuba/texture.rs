@@ -155,7 +155,7 @@ impl Reader<'_> {
         let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw && is_file(&picture) { decode_linear } else { decode_srgb };
         // The luminance of a colour is used where a number is expected.
-        let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
+        let number = |p: Color| Color::splat(change(scale.x * p.dot(LUMINANCE)));
         let picture = self.pictures().refined(&picture, property.at, decode, finer, number)?;
         Some(asset(&mut self.scene, picture, property.at))
     }

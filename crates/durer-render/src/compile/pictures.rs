@@ -103,6 +103,7 @@ impl Loader<'_> {
             green: layers.normal_green,
             bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
             bump_height: layers.bump_height,
+            bump_gradient: layers.bump_gradient,
             parameters: Vec::new(),
         };
         for (row, textured) in TEXTURE_FIELDS.iter().enumerate() {

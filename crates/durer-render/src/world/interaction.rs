@@ -79,6 +79,9 @@ impl World {
         object.local_surface(ray, point, &crossing, hit.part, rules, &mut at.surface);
         (at.ray, at.hit, at.material, at.width) = (*ray, hit, self.material_of(&hit), 0.0);
         object.transform_surface(&mut at.surface, ray, &crossing, rules);
+        if at.surface.shadow_offsets != [Vec3::ZERO; 2] && !self.has_smooth_shadows(at.material) {
+            at.surface.shadow_offsets = [Vec3::ZERO; 2];
+        }
         if let Some(n) = self.course_normal(&ray.rounded, &hit) {
             at.surface.n_shade = n;
         }

@@ -4,7 +4,7 @@ use super::material::{MaterialTextures, Principled};
 use super::{Geometry, SurfaceInteraction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{TEXTURE_FIELDS, TextureEffect};
-use durer_scene::material::principled::{NormalGreen, Switch};
+use durer_scene::material::principled::{BumpGradient, NormalGreen, Switch};
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::shape::Shape;
 use durer_scene::texture::{Channel, Mapping, Texture};
@@ -114,7 +114,7 @@ impl World {
     /// Returns the shading normal after the bump map and then the normal map were applied, or
     /// `None` if there is neither.
     pub(super) fn mapped_normal(&self, maps: &MaterialTextures, at: &SurfaceInteraction) -> Option<Vec3> {
-        let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
+        let bumped = maps.bump.and_then(|map| self.bumped(map, maps, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
         maps.normal.and_then(|map| self.normal_mapped(map, maps.green, at, normal)).or(bumped)
     }
@@ -150,10 +150,15 @@ impl World {
     ///
     /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978; here, the gradient of
     /// the height is taken along the surface.
-    fn bumped(&self, map: u32, height: f32, at: &SurfaceInteraction) -> Option<Vec3> {
+    fn bumped(&self, map: u32, maps: &MaterialTextures, at: &SurfaceInteraction) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        let slope = height * texture.slope(&mapping, self.coordinates(texture, at)?);
+        let uv = self.coordinates(texture, at)?;
+        let slope = match maps.bump_gradient {
+            BumpGradient::Smooth => texture.slope(&mapping, uv),
+            BumpGradient::Exact => texture.exact_slope(&mapping, uv),
+        };
+        let slope = maps.bump_height * slope;
         let [u, v] = dual(self.derivatives(at, mapping.second)?)?;
         (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }

@@ -3,7 +3,7 @@
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
-use durer_scene::material::principled::{NormalGreen, Walls};
+use durer_scene::material::principled::{BumpGradient, NormalGreen, Walls};
 use durer_scene::material::{ColorNoise, Parameters, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Color;
 use durer_scene::medium::Medium;
@@ -53,6 +53,8 @@ pub struct MaterialTextures {
     pub bump: Option<u32>,
     /// Difference in height between bump values 1 and 0, in world units.
     pub bump_height: f32,
+    /// Gradient of the bump map.
+    pub bump_gradient: BumpGradient,
     /// Textures of all other parameters.
     pub parameters: Vec<ParameterTexture>,
 }

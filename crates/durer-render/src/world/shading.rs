@@ -200,6 +200,17 @@ impl World {
         }
     }
 
+    /// Returns true if shadow rays from smooth meshes of a material start on the curved surface that
+    /// the normals imply.
+    pub(super) fn has_smooth_shadows(&self, material: u32) -> bool {
+        match &self.materials()[material as usize] {
+            Material::Phong(phong) => {
+                phong.principled.as_ref().is_none_or(|it| it.definition.smooth_shadows == Switch::On)
+            }
+            Material::Mix(pattern, ..) => pattern.materials().iter().all(|&part| self.has_smooth_shadows(part)),
+        }
+    }
+
     /// Returns the emission of a material, multiplied by its opacity, if both are uniform so that
     /// light sampling can use them.
     pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {

@@ -50,6 +50,11 @@ described_words! {
 }
 
 described_words! {
+    /// Gradient of a bump map.
+    BumpGradient { Smooth = "smooth", Exact = "exact" }
+}
+
+described_words! {
     /// Treatment of the medium around glass when light is refracted at it.
     Surroundings { Nested = "nested", Ignored = "ignored" }
 }
@@ -262,6 +267,10 @@ described! {
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
         bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
+        /// Gradient of the bump map. `smooth`: differences over one texel. `exact`: the derivative of
+        /// the interpolated heights, which jumps at the centres of texels, as in Mitsuba; a map with
+        /// `nearest` texels is then flat.
+        bump_gradient: BumpGradient = BumpGradient::Smooth, optional, Constraint::Any, ["bumpGradient" in set::DURER];
         /// Direction of green in the normal map. `v`: along increasing v. `cross`: along the cross
         /// product of the normal and the direction of increasing u, which transforms of the texture
         /// do not turn, as in Mitsuba.
@@ -278,6 +287,10 @@ described! {
         /// `on`: points with mapped normals reflect less light from grazing directions, as facets
         /// hide each other, so that their shading fades before the light sets. Mitsuba does so.
         normal_shadowing: Switch = Switch::Off, optional, Constraint::Any, ["normalShadowing" in set::DURER];
+        /// `on`: shadow rays from a smooth mesh start on the curved surface that its normals imply,
+        /// so that triangles do not show where the light becomes grazing. `off`: they start on the
+        /// triangle, as in Mitsuba and pbrt.
+        smooth_shadows: Switch = Switch::On, optional, Constraint::Any, ["smoothShadows" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through
         /// unchanged.
         opacity: f32 = 1.0, optional, Constraint::UnitInterval, ["opacity" in set::DURER];

@@ -96,12 +96,13 @@ impl SpectrumSource {
     }
 }
 
-/// First wavelength in nanometres, and the step between wavelengths.
+/// First wavelength in nanometres, and the step between wavelengths, which must be small enough for
+/// narrow bands.
 const FIRST: f32 = 380.0;
-const STEP: f32 = 10.0;
+const STEP: f32 = 1.0;
 
 /// Number of wavelengths.
-const ROWS: u16 = 41;
+const ROWS: u16 = 401;
 
 /// XYZ value of a spectrum, on an arbitrary scale.
 pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {

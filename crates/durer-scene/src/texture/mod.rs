@@ -196,6 +196,25 @@ impl Texture {
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
+    /// Version of [`Texture::slope`] that returns the derivative of the interpolated values. It is
+    /// zero if they are not interpolated.
+    pub fn exact_slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
+        if mapping.nearest {
+            return Vec2::ZERO;
+        }
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        let place = mapping.texture_position(uv) * size - 0.5;
+        let cell = place.floor();
+        let Vec2 { x: a, y: b } = place - cell;
+        // The centres of texels are at integer positions of the cell.
+        let [p, q, r, s] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+            .map(|[i, j]| self.texel_at(mapping, (cell + Vec2::new(i, j) + 0.5) / size)[0]);
+        let x = size.x * ((1.0 - b) * (q - p) + b * (s - r));
+        let y = size.y * ((1.0 - a) * (r - p) + a * (s - q));
+        let [[c, d, _], [e, f, _]] = mapping.transform;
+        Vec2::new(c * x + e * y, -(d * x + f * y))
+    }
+
     /// Colour and opacity at a position in the texture, before the alpha cutoff. The position is
     /// measured in texture widths from the left and texture heights from the top.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {

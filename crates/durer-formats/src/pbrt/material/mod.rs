@@ -19,7 +19,7 @@ use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::mix::Mix;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Switch, Walls};
 use durer_scene::material::{PatternMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::{Material, Spanned, TextureImage};
@@ -194,6 +194,7 @@ impl Reader<'_> {
             MaterialDef::Interface => None,
             MaterialDef::Principled(layers, at) => {
                 let (mut m, at) = (layers.clone(), *at);
+                m.smooth_shadows = Switch::Off;
                 m.opacity *= opacity.share.clamp(0.0, 1.0);
                 if opacity.picture.is_some() {
                     m.opacity_texture = opacity.picture.clone();
