@@ -124,3 +124,26 @@ fn float_texels_keep_their_values() {
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());
     assert!(Texture::from_floats(1, 1, texels).is_none());
 }
+
+#[test]
+fn exact_slopes_are_derivatives_of_the_interpolated_values() {
+    let texel = |i: u32| [(i * 97 % 251) as u8, 0, 0];
+    let texture = Texture::new(5, 4, (0..20).map(texel).collect()).unwrap();
+    let mapping = Mapping { transform: [[1.5, 0.4, 0.1], [-0.3, 0.8, 0.2]], ..Mapping::default() };
+    for i in 0..200 {
+        let uv = Vec2::new((i as f32 * 0.37).fract(), (i as f32 * 0.61).fract());
+        let value = |x: f32, y: f32| texture.texel(&mapping, uv + Vec2::new(x, y), 0.0)[0];
+        let step = 1e-3;
+        let expected =
+            Vec2::new(value(step, 0.0) - value(-step, 0.0), value(0.0, step) - value(0.0, -step)) / (2.0 * step);
+        // Skip steps that cross the centre of a texel, where the derivative jumps.
+        let cell = |uv: Vec2| (mapping.texture_position(uv) * Vec2::new(5.0, 4.0) - 0.5).floor();
+        let corners = [(step, step), (step, -step), (-step, step), (-step, -step)];
+        if corners.iter().any(|&(x, y)| cell(uv + Vec2::new(x, y)) != cell(uv)) {
+            continue;
+        }
+        let slope = texture.exact_slope(&mapping, uv);
+        assert!((slope - expected).length() < 2e-3 * (1.0 + expected.length()), "{uv}: {slope} and not {expected}");
+    }
+    assert_eq!(texture.exact_slope(&Mapping { nearest: true, ..mapping }, Vec2::splat(0.3)), Vec2::ZERO);
+}

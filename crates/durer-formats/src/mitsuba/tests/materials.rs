@@ -5,7 +5,9 @@ use super::shapes::assert_faces_inwards;
 use super::{clean, clean_in, layers, material, objects, picture, read};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Facets, NormalBending, NormalGreen, Surroundings, Switch, Walls};
+use durer_scene::material::principled::{
+    Backs, BumpGradient, Facets, NormalBending, NormalGreen, Surroundings, Switch, Walls,
+};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{Material, PictureBytes};
 
@@ -84,7 +86,10 @@ fn textures_of_numbers_become_linear_pictures() {
     assert!(first.iter().any(|x| (x - 0.3).abs() < 3e-3), "{first:?}");
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
-    assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
+    let bump = check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]);
+    assert_eq!((bump.bump_height, bump.bump_gradient), (0.3, BumpGradient::Exact));
+    // Mitsuba's shadow rays start on the triangles of smooth meshes.
+    assert_eq!(bump.smooth_shadows, Switch::Off);
     // The luminance of a colour is used where a number is expected.
     let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
         <rgb name='color1' value='1,0,0'/></texture>";
@@ -318,4 +323,59 @@ fn conductor_tint_applies_at_all_angles() {
     // Without a material, all light is reflected: n = 0 and k = 1.
     let white = layers("<bsdf type='conductor'/>");
     assert_eq!((white.metal_ior, white.metal_extinction, white.base_color), (Some(Vec3::ZERO), Vec3::ONE, Vec3::ONE));
+}
+
+#[test]
+fn colours_of_checkerboards_are_not_rounded() {
+    let of = |value: f32| {
+        format!(
+            "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'>\
+             <rgb name='color0' value='{value}'/><rgb name='color1' value='{value}'/></texture></bsdf>"
+        )
+    };
+    for value in [0.5, 0.1234] {
+        let scene = clean(&format!("<shape type='sphere'>{}</shape>", of(value)));
+        let Material::Principled(layers) = material(&scene) else { panic!() };
+        let name = layers.base_color_texture.as_ref().unwrap();
+        let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
+        let image = durer_image::read(bytes, path).unwrap();
+        assert!(image.pixels.iter().all(|p| *p == Vec3::splat(value)), "{value}: {:?}", image.pixels);
+    }
+}
+
+/// The colours of a `nonlinear` plastic are converted after they are interpolated. With the share r
+/// that the boundary reflects back, c becomes c (1 - r) / (1 - c r).
+#[test]
+fn nonlinear_plastics_convert_interpolated_colours() {
+    let picture = picture(2, 1, &[[0; 3], [255; 3]]);
+    let scene = clean_in(
+        &[("two.png", &picture)],
+        "<shape type='sphere'><bsdf type='plastic'><boolean name='nonlinear' value='true'/>\
+         <texture name='diffuse_reflectance' type='bitmap'><string name='filename' value='two.png'/></texture>\
+         </bsdf></shape>",
+    );
+    let Material::Principled(layers) = material(&scene) else { panic!() };
+    let name = layers.base_color_texture.as_ref().unwrap();
+    let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
+    let image = durer_image::read(bytes, path).unwrap();
+    // The picture repeats, so that the interpolated values run from 0 to 1 and back.
+    let side = image.width / 2;
+    let plain = |x: u32| {
+        let place = (f64::from(x) + 0.5) / f64::from(side) - 0.5;
+        if place < 0.0 {
+            -place
+        } else if place > 1.0 {
+            2.0 - place
+        } else {
+            place
+        }
+    };
+    let of = |x: u32| f64::from(image.get(x, 0).unwrap().x);
+    let middle = side - 1;
+    let r = (plain(middle) - of(middle)) / (plain(middle) * (1.0 - of(middle)));
+    assert!(side > 1 && (0.3..0.8).contains(&r), "{side} {r}");
+    for x in 0..image.width {
+        let expected = plain(x) * (1.0 - r) / (1.0 - plain(x) * r);
+        assert!((of(x) - expected).abs() < 1e-5, "{x}: {} and not {expected}", of(x));
+    }
 }

@@ -328,3 +328,45 @@ fn linear_curve_joints_and_ends_are_round() {
         assert!(normals.iter().all(|n| face.dot(data.normals[*n as usize]) > -1e-6));
     }
 }
+
+#[test]
+fn flipped_spheres_keep_their_texture_coordinates() {
+    let scene = clean(
+        "<shape type='sphere'><boolean name='flip_normals' value='true'/><bsdf type='diffuse'/></shape>", // prose: keep
+    );
+    let data = mesh(&scene);
+    for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
+        for (&i, &uv) in corners.iter().zip(uvs) {
+            let from_top = durer_scene::math::fp::atan2(
+                data.positions[i as usize].truncate().length(),
+                data.positions[i as usize].z,
+            );
+            // Mitsuba's v is 0 at +z, and Dürer's v is 1 there.
+            let v = 1.0 - from_top / std::f32::consts::PI;
+            assert!((data.uvs[uv as usize].y - v).abs() < 1e-5, "{}", data.positions[i as usize]);
+        }
+    }
+}
+
+/// Normals of a mesh without normals are computed in the world, where a scale that is not uniform
+/// changes the angles that weight them.
+#[test]
+fn normals_of_scaled_meshes_are_computed_in_the_world() {
+    for scale in [Vec3::ONE, Vec3::splat(3.0), Vec3::new(3.0, 1.0, 0.5), Vec3::new(-2.0, 1.0, 1.0)] {
+        let inner = format!(
+            "<shape type='ply'><string name='filename' value='folded.ply'/>\
+             <transform name='to_world'><scale x='{}' y='{}' z='{}'/></transform></shape>",
+            scale.x, scale.y, scale.z
+        );
+        let data = mesh(&clean_in(&[("folded.ply", FOLDED.as_bytes())], &inner)).clone();
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 1.0)].map(|p| scale * p);
+        let face =
+            |a: usize, b: usize| (corners[a].cross(corners[b]).normalize(), corners[a].angle_between(corners[b]));
+        let ((n, angle), (m, other)) = (face(1, 2), face(2, 3));
+        let expected = (angle * n + other * m).normalize();
+        let at = |k: usize| data.positions[data.triangles[0][k] as usize];
+        let corner = (0..3).find(|&k| at(k) == Vec3::ZERO).unwrap();
+        let found = (data.normals[data.triangle_normals[0][corner] as usize] / scale).normalize();
+        assert!((found - expected).length() < 1e-5, "{scale}: {found} and not {expected}");
+    }
+}

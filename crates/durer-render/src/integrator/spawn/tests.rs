@@ -198,3 +198,21 @@ fn shadow_rays_of_curved_surfaces_end_at_the_light() {
     assert!((end - surface.point() - to.as_dvec3()).length() > 0.01);
     assert_eq!(to_point(&surface, Vec3::Y, f32::INFINITY).dir(), Vec3::Y);
 }
+
+#[test]
+fn materials_choose_where_shadow_rays_of_smooth_meshes_start() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ball.obj"), include_str!("../../../../../scenes/meshes/ball80-smooth.obj"))
+        .unwrap();
+    for (word, is_smooth) in [("on", true), ("off", false)] {
+        let text = format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}
+            Materials {{ PrincipledMaterial {{ smoothShadows {word} }} }}
+            Group {{ MaterialIndex 0 TriangleMesh {{ obj_file ball.obj }} }}"
+        );
+        let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+        let world = world.unwrap_or_else(|| panic!("{found:?}"));
+        let at = world.intersect(Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z), &mut ()).unwrap();
+        assert_eq!(at.surface.shadow_offsets != [Vec3::ZERO; 2], is_smooth, "{word}");
+    }
+}
