@@ -347,11 +347,10 @@ fn colours_of_checkerboards_are_not_rounded() {
 /// that the boundary reflects back, c becomes c (1 - r) / (1 - c r).
 #[test]
 fn nonlinear_plastics_convert_interpolated_colours() {
-    let picture = picture(2, 1, &[[0; 3], [255; 3]]);
     let scene = clean_in(
-        &[("two.png", &picture)],
+        &[("two.pfm", &picture([[0.0; 3], [1.0; 3]]))],
         "<shape type='sphere'><bsdf type='plastic'><boolean name='nonlinear' value='true'/>\
-         <texture name='diffuse_reflectance' type='bitmap'><string name='filename' value='two.png'/></texture>\
+         <texture name='diffuse_reflectance' type='bitmap'><string name='filename' value='two.pfm'/></texture>\
          </bsdf></shape>",
     );
     let Material::Principled(layers) = material(&scene) else { panic!() };
