@@ -71,6 +71,8 @@ features! {
     Textures: "textures", false, false;
     /// Colours of vertices.
     VertexColors: "vertex colours", false, false;
+    /// Shadow rays that start on the triangles of smooth meshes.
+    FlatShadows: "smooth meshes with `smoothShadows off`, as in files of Mitsuba and pbrt", false, false;
     /// Principled materials with a base of any kind: diffuse, plastic, metal or smooth glass.
     PrincipledMaterials: "principled materials: diffuse, plastic, metal and smooth glass", true, true;
     /// Other layers of principled materials. The Whitted integrator approximates them.

@@ -33,6 +33,12 @@ pub fn needs(world: &World, job: &Job) -> Vec<Feature> {
         {
             found.push(Feature::VertexColors);
         }
+        if let Geometry::Mesh(tree) = &object.geometry
+            && !tree.mesh.normals().0.is_empty()
+            && !world.has_smooth_shadows(object.material)
+        {
+            found.push(Feature::FlatShadows);
+        }
     }
     let mut materials: Vec<u32> = world.objects().iter().filter_map(used).collect();
     materials.sort_unstable();

@@ -202,7 +202,7 @@ impl World {
 
     /// Returns true if shadow rays from smooth meshes of a material start on the curved surface that
     /// the normals imply.
-    pub(super) fn has_smooth_shadows(&self, material: u32) -> bool {
+    pub fn has_smooth_shadows(&self, material: u32) -> bool {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => {
                 phong.principled.as_ref().is_none_or(|it| it.definition.smooth_shadows == Switch::On)
