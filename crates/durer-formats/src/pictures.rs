@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// itself: for the new picture and its 8-bit data, both raw and encoded.
 pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
-/// Largest number of texels of a picture that [`Pictures::refined`] makes.
+/// Largest number of texels of a derived picture in single precision.
 const MOST_REFINED: u64 = 1 << 22;
 
 /// Reader for the pictures that a scene names, which also converts pictures and reports errors.
@@ -98,8 +98,8 @@ impl Pictures<'_> {
         let mut image = self.decoded(path, at, image::decode_linear)?;
         image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
         // Pictures with data other than colours stay linear.
-        let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
-        let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
+        let (bytes, kind) = stored(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
+        let path = format!("{path}#{}.{kind}", &Digest::of(&bytes).to_string()[..12]);
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
@@ -182,10 +182,7 @@ impl Pictures<'_> {
         let (path, image) = self.source(picture, at, decode)?;
         let texel = |p: &Color| change(*p).clamp(Color::ZERO, Color::ONE);
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
-        // Pictures that were not limited to 8 bits stay so.
-        let is_float = matches!(&picture.bytes, PictureBytes::Memory(path, _) if path.ends_with(".pfm"));
-        let bytes = if is_float { as_pfm(image)? } else { as_png(image, Transfer::Linear)? };
-        let kind = if is_float { "pfm" } else { "png" };
+        let (bytes, kind) = stored(image, Transfer::Linear)?;
         let path = format!("{path}#{}.{kind}", &Digest::of(&bytes).to_string()[..12]);
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
@@ -220,8 +217,8 @@ impl Pictures<'_> {
         let most = pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
         let most = if most.is_finite() { most } else { 1.0 };
         pixels.iter_mut().for_each(|p| *p /= most);
-        let bytes = as_png(Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?;
-        let path = format!("{}#{}.png", one.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
+        let (bytes, kind) = stored(Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?;
+        let path = format!("{}#{}.{kind}", one.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
         Some((TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: one.mapping }, most))
     }
 
@@ -264,6 +261,15 @@ pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)
     let bytes = as_pfm(Image::from_pixels(2, 2, pixels.to_vec()).ok()?)?;
     let name = format!("corners-{}.pfm", &Digest::of(format!("{colors:?}").as_bytes()).to_string()[..12]);
     Some((PictureBytes::Memory(name, bytes), most))
+}
+
+/// Encodes a derived picture and returns it with its extension. Eight bits would round the values,
+/// so only large pictures are stored with eight bits and the given transfer function.
+fn stored(image: Image, transfer: Transfer) -> Option<(Arc<[u8]>, &'static str)> {
+    match image.pixels.len() as u64 <= MOST_REFINED {
+        true => Some((as_pfm(image)?, "pfm")),
+        false => Some((as_png(image, transfer)?, "png")),
+    }
 }
 
 /// Encodes a picture as an 8-bit PNG.

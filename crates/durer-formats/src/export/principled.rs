@@ -119,9 +119,13 @@ impl Export<'_> {
         if is_sheet {
             let color = Paint {
                 picture: m.subsurface_color_texture.as_ref().map(|name| self.picture(name)),
-                ..Paint::plain(m.subsurface_color)
+                ..Paint::plain(m.subsurface_color + m.subsurface_through.unwrap_or_default())
             };
-            let sheet = Surface::Sheet { color, through: 0.5 * (1.0 + m.subsurface_scatter_anisotropy) };
+            let through = match m.subsurface_through {
+                Some(through) => through / (m.subsurface_color + through).max(Vec3::splat(1e-6)),
+                None => Vec3::splat(0.5 * (1.0 + m.subsurface_scatter_anisotropy)),
+            };
+            let sheet = Surface::Sheet { color, through };
             surface = Surface::mix(sheet, surface, m.subsurface_weight, None);
         }
         if m.coat_weight <= 0.0 {

@@ -18,8 +18,9 @@ pub(crate) enum Surface {
     Glass { ior: f32, rough: Rough, reflected: Vec3, transmitted: Vec3 },
     /// Thin sheet of glass.
     Pane { ior: f32, reflected: Vec3, transmitted: Vec3 },
-    /// Thin sheet that scatters light to both sides; `through` is the fraction of it that crosses.
-    Sheet { color: Paint, through: f32 },
+    /// Thin sheet that scatters light to both sides; `through` is the fraction of it that crosses,
+    /// for red, green and blue.
+    Sheet { color: Paint, through: Vec3 },
     /// Mix of two surfaces; the picture multiplies the share of the first one.
     Mix(Box<[Surface; 2]>, f32, Option<TextureImage>),
     /// One surface on the front and another one on the back.

@@ -88,6 +88,12 @@ pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
 
+/// Returns the number of patches of a bilinear mesh.
+pub(super) fn patch_count(params: &Params) -> usize {
+    let [corners, points] = ["indices", "P"].map(|name| params.get(name).map(|param| param.numbers().len()));
+    corners.map(|count| count / 4).or(points.map(|count| count / 12)).unwrap_or(1).max(1)
+}
+
 /// Reads a `loopsubdiv` and subdivides it into at most `left` triangles.
 pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.mark_known(&["scheme"]);

@@ -103,6 +103,12 @@ impl Reader<'_> {
                 return self.report.error_with_help(at, format!("unknown shape `{other}`"), help);
             }
         };
+        // A mesh is one area light for each triangle, and a bilinear mesh for each patch.
+        let shape = shape.map(|shape| match kind {
+            "trianglemesh" | "plymesh" | "loopsubdiv" | "curve" => shape,
+            "bilinearmesh" => ShapeDef { lights: mesh::patch_count(&params), ..shape },
+            _ => ShapeDef { lights: 1, ..shape },
+        });
         params.mark_known(&["alpha"]);
         if third {
             params.warn_unsupported(&["shadowalpha"], "shadows use `alpha`");
@@ -167,7 +173,10 @@ impl Reader<'_> {
         let (center, to_world) = match to_world.matrix3 == DAffine3::IDENTITY.matrix3 {
             // In pbrt, the poles are on the z axis, and u is 0 at +x. In Dürer, the poles are on
             // the y axis and u = 1/2 is at -z.
-            _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
+            _ if self.is_pictured()
+                || self.is_anisotropic()
+                || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) =>
+            {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, to_world * DAffine3::from_mat3(turned))
             }
@@ -239,7 +248,10 @@ impl Reader<'_> {
             Some(cached) => cached.clone(),
             None => {
                 let place = params.get("filename").map_or(at, |param| param.values_at);
-                let data = Arc::new(mesh_file(self.input, self.report, &name, place)?.oriented(reversed));
+                let mut data = mesh_file(self.input, self.report, &name, place)?.oriented(reversed);
+                // pbrt ignores the colours of vertices.
+                data.colors.clear();
+                let data = Arc::new(data);
                 self.meshes.insert(key, data.clone());
                 data
             }

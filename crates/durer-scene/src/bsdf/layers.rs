@@ -238,9 +238,15 @@ impl<'t> LayerStack<'_, 't> {
             return bsdf.push(DiffuseTransmission { color: entering }, weight, share);
         }
         let color = self.view.lanes.reflectance(m.subsurface_color);
-        let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
         let share = (weight * color).max_element();
         let diffuse = Diffuse { boundary, normal: self.view.normal, ..Diffuse::lambert(color) };
+        if let Some(through) = m.subsurface_through {
+            let through = self.view.lanes.reflectance(through);
+            bsdf.push(diffuse, weight, share);
+            bsdf.push(DiffuseTransmission { color: through }, weight, (weight * through).max_element());
+            return;
+        }
+        let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
         bsdf.push(diffuse, weight * (1.0 - onwards), share * (1.0 - onwards));
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }

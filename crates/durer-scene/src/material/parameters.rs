@@ -56,6 +56,7 @@ parameters! {
     subsurface_weight: f32,
     subsurface_color: Vec3,
     subsurface_scatter_anisotropy: f32,
+    subsurface_through: Option<Vec3>,
     coat_weight: f32,
     coat_color: Vec3,
     coat_roughness: f32,

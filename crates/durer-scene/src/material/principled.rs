@@ -204,6 +204,10 @@ described! {
         /// Mean cosine of the subsurface scattering angle: -1 is backward, 0 isotropic, 1 forward.
         subsurface_scatter_anisotropy: f32 = 0.0, optional, Constraint::Between(-1.0, 1.0),
             ["subsurfaceScatterAnisotropy" in set::DURER];
+        /// With `walls thin`: colour of the light that passes through the sheet, from 0 to 1.
+        /// `subsurfaceColor` is then the colour of the light that the sheet reflects, and
+        /// `subsurfaceScatterAnisotropy` has no effect.
+        subsurface_through: Option<Vec3> = None, optional, Constraint::Any, ["subsurfaceThrough" in set::DURER];
         /// Strength of the clear coat, from 0 to 1.
         coat_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["coatWeight" in set::DURER];
         /// Texture that multiplies `coatWeight`.

@@ -33,6 +33,10 @@ impl Writer<'_> {
                 // 1.
                 const ROUGHNESS: f32 = 0.5;
                 let albedo = crate::disney::diffuse_albedo(ROUGHNESS);
+                if through.max_element() - through.min_element() > 1e-3 {
+                    self.export.warn_lost("sheets of Mitsuba reflect and transmit one colour: their sum is written");
+                }
+                let through = through.element_sum() / 3.0;
                 let color = Paint { color: color.color / albedo, ..color.clone() };
                 let sheet = Element::plugin("bsdf", "principledthin").float("diff_trans", 2.0 * through);
                 self.paint(sheet.float("roughness", ROUGHNESS), "base_color", &color)

@@ -10,15 +10,17 @@ use super::super::named;
 use super::super::params::{Kind, Params, Values};
 use super::super::state::Reader;
 use super::{matte, set_subsurface};
+use crate::export::metal::index_of_refraction;
 use crate::shared_report::suggest;
 use durer_diag::Span;
-use durer_scene::bsdf::fresnel::{self, conductor_colors, schlick_82};
+use durer_scene::bsdf::fresnel::{self, conductor_colors};
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Surroundings, Switch, Walls};
-use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::math::{Vec3, fp};
 use durer_scene::spectrum::SpectrumSource;
+use std::array::from_fn;
 
 const MATERIALS: [&str; 12] = [
     "diffuse",
@@ -146,13 +148,10 @@ impl Reader<'_> {
                     }
                     scale * color
                 });
-                // A thin sheet has the same scattering ratio for all colours.
-                let sum = |color: Color| color.element_sum().max(1e-6);
                 m = PrincipledMaterial {
                     subsurface_weight: 1.0,
-                    subsurface_color: (reflected + through).min(Vec3::ONE),
-                    subsurface_scatter_anisotropy: ((sum(through) - sum(reflected)) / (sum(through) + sum(reflected)))
-                        .clamp(-0.999, 0.999),
+                    subsurface_color: reflected.clamp(Vec3::ZERO, Vec3::ONE),
+                    subsurface_through: Some(through.clamp(Vec3::ZERO, Vec3::ONE)),
                     walls: Walls::Thin,
                     ..matte(Vec3::ZERO)
                 };
@@ -242,7 +241,7 @@ impl Reader<'_> {
         outside: f32,
     ) {
         let copper = |which: &str| named::spectrum(&format!("metal-Cu-{which}"));
-        let [f0, f82] = match params.get(reflectance) {
+        let [eta, k] = match params.get(reflectance) {
             Some(param) => {
                 if params.get(eta).is_some() || params.get(k).is_some() {
                     self.report
@@ -260,17 +259,27 @@ impl Reader<'_> {
                     }
                 };
                 // With eta = 1, this k gives the desired reflectance at normal incidence.
-                let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
-                conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
+                let k = share.map(|r| 2.0 * (r.clamp(0.0, 0.9999) / (1.0 - r.clamp(0.0, 0.9999))).sqrt());
+                [Vec3::splat(1.0 / outside), k / outside]
             }
             None => {
                 let value = |name, which| params.spectrum(name).or_else(|| copper(which));
                 let grey = SpectrumSource::Rgb(Vec3::ONE);
-                conductor_colors(&value(eta, "eta").unwrap_or(grey.clone()), &value(k, "k").unwrap_or(grey), outside)
+                let [eta, k] = [value(eta, "eta"), value(k, "k")].map(|value| value.unwrap_or(grey.clone()));
+                match (&eta, &k) {
+                    (SpectrumSource::Rgb(eta), SpectrumSource::Rgb(k)) => [*eta / outside, *k / outside],
+                    // Reflectances average over the spectrum; indices of refraction do not.
+                    _ => {
+                        let [f0, f82] = conductor_colors(&eta, &k, outside);
+                        let index: [_; 3] = from_fn(|i| index_of_refraction(f0[i], f82[i]));
+                        [0, 1].map(|column| Vec3::from_array(index.map(|pair| pair[column])))
+                    }
+                }
             }
         };
+        (m.metal_ior, m.metal_extinction) = (Some(eta), k);
+        let [f0, _] = conductor_colors(&SpectrumSource::Rgb(eta), &SpectrumSource::Rgb(k), 1.0);
         (m.base_metalness, m.base_color) = (1.0, f0);
-        m.specular_color = f82 / schlick_82(f0).max(Vec3::splat(1e-6));
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
     }
 

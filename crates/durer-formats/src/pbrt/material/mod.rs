@@ -23,7 +23,7 @@ use durer_scene::material::principled::{Switch, Walls};
 use durer_scene::material::{PatternMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::{Material, Spanned, TextureImage};
-use durer_scene::texture::Mapping;
+use durer_scene::texture::{Mapping, Wrap};
 use std::rc::Rc;
 
 /// Maximum depth of nested mixes.
@@ -165,6 +165,19 @@ impl Reader<'_> {
         light || self.materials[self.state.material].is_pictured()
     }
 
+    /// Returns true if the directions of u and v matter for the current material.
+    pub fn is_anisotropic(&self) -> bool {
+        self.has_anisotropy(self.state.material)
+    }
+
+    fn has_anisotropy(&self, material: usize) -> bool {
+        match &self.materials[material] {
+            MaterialDef::Principled(layers, _) => layers.specular_anisotropy > 0.0,
+            MaterialDef::Mix { parts, .. } => parts.iter().any(|&part| self.has_anisotropy(part)),
+            MaterialDef::Hair(..) | MaterialDef::Interface => false,
+        }
+    }
+
     /// Returns the scene index of a material with its emission and opacity, or `None` for a
     /// material that is not rendered.
     pub fn material_index(
@@ -259,7 +272,9 @@ impl Reader<'_> {
         if let Some(name) = &light.picture
             && let Some(bytes) = self.eight_bits(name, light.at)
         {
-            m.emission_texture = Some(self.asset(TextureImage { bytes, mapping: Mapping::default() }, light.at));
+            // Beyond its edges, the picture continues with its last texels.
+            let mapping = Mapping { wrap: [Wrap::Clamp; 2], ..Mapping::default() };
+            m.emission_texture = Some(self.asset(TextureImage { bytes, mapping }, light.at));
         }
     }
 }

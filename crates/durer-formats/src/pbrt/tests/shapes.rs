@@ -223,3 +223,17 @@ fn tessellation_is_limited() {
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
     assert!(messages.len() == 1 && messages[0].contains("the surface is subdivided only 7 times"), "{messages:?}");
 }
+
+#[test]
+fn colours_of_vertices_are_ignored() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n3 0 1 2\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("red.ply"), ply).unwrap();
+    let text = "Camera \"perspective\" WorldBegin Shape \"plymesh\" \"string filename\" \"red.ply\"";
+    let (scene, messages) = read_in(folder.path(), text);
+    let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
+    let data = scene.assets.meshes.values().next().unwrap();
+    assert!(data.colors.is_empty() && data.positions.len() == 3);
+}

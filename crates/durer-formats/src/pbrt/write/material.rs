@@ -45,7 +45,7 @@ impl Writer<'_> {
                     self.export.warn_lost("sheets of pbrt that scatter light have no pictures: one colour is written");
                 }
                 let sheet = directive.string("type", "diffusetransmission");
-                sheet.rgb("reflectance", (1.0 - through) * color.color).rgb("transmittance", *through * color.color)
+                sheet.rgb("reflectance", (1.0 - through) * color.color).rgb("transmittance", through * color.color)
             }
             Surface::Mix(parts, share, picture) => {
                 let names = [0, 1].map(|i| format!("{name}-{i}"));
