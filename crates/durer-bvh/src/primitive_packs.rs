@@ -87,6 +87,15 @@ impl Default for PrimitivePacks {
 }
 
 impl PrimitivePacks {
+    /// Iterates over the numbers of all primitives, kind by kind.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        fn of<const N: usize>(packs: &[Pack<N>]) -> impl Iterator<Item = u32> {
+            packs.iter().flat_map(|pack| pack.indices().map(|i| pack.numbers[i]))
+        }
+        let round = of(&self.planes).chain(of(&self.spheres)).chain(of(&self.discs));
+        round.chain(of(&self.rectangles)).chain(of(&self.boxes))
+    }
+
     /// Adds the plane with the equation normal · p = offset.
     pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
         let n = normal.as_dvec3();

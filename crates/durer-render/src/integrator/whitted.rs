@@ -238,7 +238,7 @@ impl<'w> Whitted<'w> {
         for (&number, found) in batch.iter().zip(found) {
             let segment = queue.segment(number);
             begin(segment.camera as usize);
-            let Some(hit) = found else {
+            let Some(mut hit) = found else {
                 let sky = self.world.background_radiance(segment.ray.dir());
                 let node = listener.begin(segment.node, || TermKind::Sky);
                 listener.end(node, Color::ONE, Color::ONE, sky);
@@ -246,16 +246,27 @@ impl<'w> Whitted<'w> {
                 continue;
             };
             let point = &mut points[count];
-            self.world.intersect_into(&segment.ray, hit, &mut point.at);
-            match self.transition(&point.at, &segment.media) {
-                Some(MediumTransition { displaced: true, behind, .. }) => {
-                    (segment.media, segment.t_min) = (behind, hit.t);
-                    queue.push_again(number);
-                    continue;
+            let mut passed = SmallVec::<[u32; 4]>::new();
+            let transition = loop {
+                self.world.intersect_into(&segment.ray, hit, &mut point.at);
+                match self.transition(&point.at, &segment.media) {
+                    Some(MediumTransition { displaced: true, behind, .. }) => {
+                        segment.media = behind;
+                        passed.push(hit.object);
+                        match self.world.coincident(&segment.ray, hit.t, &passed) {
+                            Some(next) => hit = next,
+                            None => break None,
+                        }
+                    }
+                    transition => break Some(transition.unwrap_or_default()),
                 }
-                Some(transition) => point.transition = transition,
-                None => point.transition = MediumTransition::default(),
-            }
+            };
+            let Some(transition) = transition else {
+                segment.t_min = hit.t;
+                queue.push_again(number);
+                continue;
+            };
+            point.transition = transition;
             let Side { n, from_behind, black } = self.side(&point.at);
             listener.hit(segment.node, || HitRecord::new(self.world, &point.at, n, from_behind, black));
             (point.segment, point.n, point.black) = (number, n, black);

@@ -2,6 +2,7 @@
 //! threads.
 
 mod batch;
+mod coincident;
 mod contents;
 mod course;
 pub mod csg;
@@ -16,6 +17,7 @@ pub mod shading;
 pub mod solid;
 
 pub(crate) use batch::{MAX_BATCH, SmallWorld};
+pub(crate) use coincident::PassedSurfaces;
 pub use contents::{Assets, Contents};
 pub use course::{CourseAccel, HitRules, Matrix, VectorLibrary};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};

@@ -11,10 +11,9 @@ use super::state::{Dimension, PathState, SampleContext};
 use super::vertex::{CANDIDATES, Vertex, VertexKind};
 use crate::integrator::DirectSampling;
 use crate::integrator::media::MediumStack;
-use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
-use crate::world::SurfaceInteraction;
 use crate::world::emitters::{LightChoice, LightSample};
+use crate::world::{PassedSurfaces, SurfaceInteraction};
 use durer_scene::math::{Color, Ray64, Vec2};
 use durer_scene::medium::Segment;
 use durer_scene::spectrum::Spectrum;
@@ -167,9 +166,9 @@ impl Path<'_> {
         }
         let (mut left, mut sheets) = (Spectrum::ONE, 0);
         let mut numbers = state.sample.stream(state.depth, 1);
-        let mut pass = |media: &MediumStack, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
+        let mut pass = |media: &MediumStack, ray: &Ray64, from: f32, to: f32| match self.world.medium(media.object()) {
             Some(medium) => {
-                let segment = Segment { origin: ray.origin(), dir: light.wi, from: 0.0, to };
+                let segment = Segment { origin: ray.origin(), dir: light.wi, from, to };
                 medium.transmittance(&segment, &context.lanes, &mut || numbers.number())
             }
             None => Spectrum::ONE,
@@ -181,16 +180,16 @@ impl Path<'_> {
             match self.world.occluded(&ray, listener) {
                 true if hides_backs => {}
                 true => return (Spectrum::ZERO, 0),
-                false => return (pass(media, &ray, ray.rounded.t_max), 0),
+                false => return (pass(media, &ray, 0.0, ray.rounded.t_max), 0),
             }
         }
-        let mut media = media.clone();
+        let (mut media, mut passed, mut from) = (media.clone(), PassedSurfaces::default(), 0.0);
         // After 64 layers, the light counts as occluded.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, listener) else {
-                return (left * pass(&media, &ray, ray.rounded.t_max), sheets);
+            let Some(hit) = passed.next_hit(self.world, &mut ray, listener) else {
+                return (left * pass(&media, &ray, from, ray.rounded.t_max), sheets);
             };
-            left *= pass(&media, &ray, hit.t);
+            left *= pass(&media, &ray, from, hit.t);
             let blocker = self.world.interaction(ray, hit);
             match self.transition(&blocker, &media, &context.lanes) {
                 Some(transition) if self.has_no_effect(&blocker, &transition) => media = transition.behind,
@@ -204,7 +203,8 @@ impl Path<'_> {
             if left == Spectrum::ZERO {
                 break;
             }
-            ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
+            passed.pass(&hit);
+            from = hit.t;
         }
         (Spectrum::ZERO, 0)
     }

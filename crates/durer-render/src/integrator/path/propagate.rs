@@ -4,8 +4,9 @@
 use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::media::{MediumStack, MediumTransition};
+use crate::integrator::spawn::offset_bound;
 use crate::integrator::trace::TraceListener;
-use crate::world::{Hit, SurfaceInteraction};
+use crate::world::{Hit, PassedSurfaces, SurfaceInteraction};
 use durer_scene::math::{Ray64, Vec3, gamma};
 use durer_scene::medium::{DistanceSample, HenyeyGreenstein, Segment};
 use durer_scene::spectrum::{Lanes, Spectrum};
@@ -61,6 +62,9 @@ impl Path<'_> {
         // Ray that starts at the last scattering event and skips the surfaces passed since then.
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
+        let mut passed = PassedSurfaces::default();
+        // Position of the last boundary of a medium, and the media in front of it.
+        let mut boundary: Option<(f32, MediumStack)> = None;
         let (mut traversed, mut layers, mut scatterings) = (0.0, 0, 0);
         let mut numbers = state.sample.stream(state.depth, 0);
         let before = state.throughput;
@@ -98,6 +102,7 @@ impl Path<'_> {
                             let dir = medium.phase.sample(segment.dir, numbers.pair());
                             state.ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
                             (rest, traversed) = (state.ray, 0.0);
+                            (passed, boundary) = (PassedSurfaces::default(), None);
                             (state.prev_vertex, state.camera_distance) = (None, None);
                             state.throughput = before * transmittance;
                             break 'passed;
@@ -112,11 +117,11 @@ impl Path<'_> {
                     at.width = cone.width_at(before + length);
                 }
                 if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), at) {
-                    rest.rounded.t_min = hit.t;
+                    passed.pass(&hit);
                     break 'passed;
                 }
                 if self.hides_emitters(state) && self.world.emits(at.material) {
-                    rest.rounded.t_min = hit.t;
+                    passed.pass(&hit);
                     break 'passed;
                 }
                 if self.world.has_cutouts() {
@@ -124,21 +129,31 @@ impl Path<'_> {
                     layers += 1;
                     // Passing through a cutout does not count as a bounce.
                     if opacity < 1.0 && state.sample.layer(state.depth, layers) >= opacity {
-                        rest.rounded.t_min = hit.t;
+                        passed.pass(&hit);
                         break 'passed;
                     }
                 }
                 match self.transition(at, &state.media, lanes) {
                     Some(transition) if self.has_no_effect(at, &transition) => {
-                        (state.media, rest.rounded.t_min) = (transition.behind, hit.t);
+                        boundary = Some((hit.t, std::mem::replace(&mut state.media, transition.behind)));
+                        passed.pass(&hit);
                     }
                     transition => {
+                        // A boundary that is as close as the rounding errors, such as the bottom of
+                        // smoke on a floor, can lie on either side of the surface. Light that the
+                        // surface reflects starts in front of both.
+                        if let Some((t, media)) = boundary
+                            && transition.is_none()
+                            && (hit.t - t) * stretch <= offset_bound(&at.surface) + gamma(4) * length
+                        {
+                            state.media = media;
+                        }
                         state.camera_distance = state.camera_distance.map(|before| before + length);
                         return (PathEvent::Surface(transition), transmittance);
                     }
                 }
             }
-            hit = self.world.closest_along(&mut rest, listener);
+            hit = passed.next_hit(self.world, &mut rest, listener);
         }
     }
 
