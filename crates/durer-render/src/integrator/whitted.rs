@@ -10,7 +10,7 @@
 use super::media::MediumTransition;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
 use super::{Integrate, IntegratorContext, IntegratorOptions};
-use crate::world::{MAX_BATCH, Material, SurfaceInteraction, WeightedMaterial, World};
+use crate::world::{MAX_BATCH, Material, PassedSurfaces, SurfaceInteraction, WeightedMaterial, World};
 use direct::{LightTerms, compute_powers};
 use durer_scene::describe::described;
 use durer_scene::dialect::set;
@@ -246,14 +246,18 @@ impl<'w> Whitted<'w> {
                 continue;
             };
             let point = &mut points[count];
-            let mut passed = SmallVec::<[u32; 4]>::new();
+            let mut passed = PassedSurfaces::default();
             let transition = loop {
                 self.world.intersect_into(&segment.ray, hit, &mut point.at);
+                if let Some(contact) = self.world.contact(&point.at) {
+                    hit = contact;
+                    self.world.intersect_into(&segment.ray, hit, &mut point.at);
+                }
                 match self.transition(&point.at, &segment.media) {
                     Some(MediumTransition { displaced: true, behind, .. }) => {
                         segment.media = behind;
-                        passed.push(hit.object);
-                        match self.world.coincident(&segment.ray, hit.t, &passed) {
+                        passed.pass(&hit);
+                        match passed.coincident(self.world, &segment.ray) {
                             Some(next) => hit = next,
                             None => break None,
                         }

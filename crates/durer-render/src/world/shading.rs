@@ -200,6 +200,23 @@ impl World {
         }
     }
 
+    /// Returns true if no light passes the surfaces of a material anywhere.
+    pub(super) fn is_opaque(&self, material: u32) -> bool {
+        let of_principled = |principled: &Principled| {
+            let m = &principled.definition;
+            let scatters = m.subsurface_weight > 0.0 || m.transmission_weight > 0.0;
+            !scatters && m.backs != Backs::Hidden && !self.is_cutout(principled)
+        };
+        match &self.materials()[material as usize] {
+            Material::Phong(phong) => {
+                phong.transparent == Color::ZERO
+                    && phong.fibre.is_none()
+                    && phong.principled.as_deref().is_none_or(of_principled)
+            }
+            Material::Mix(pattern, ..) => pattern.materials().iter().all(|&part| self.is_opaque(part)),
+        }
+    }
+
     /// Returns true if shadow rays from smooth meshes of a material start on the curved surface that
     /// the normals imply.
     pub fn has_smooth_shadows(&self, material: u32) -> bool {

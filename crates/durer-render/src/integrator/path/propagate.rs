@@ -4,7 +4,6 @@
 use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::media::{MediumStack, MediumTransition};
-use crate::integrator::spawn::offset_bound;
 use crate::integrator::trace::TraceListener;
 use crate::world::{Hit, PassedSurfaces, SurfaceInteraction};
 use durer_scene::math::{Ray64, Vec3, gamma};
@@ -63,8 +62,6 @@ impl Path<'_> {
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
         let mut passed = PassedSurfaces::default();
-        // Position of the last boundary of a medium, and the media in front of it.
-        let mut boundary: Option<(f32, MediumStack)> = None;
         let (mut traversed, mut layers, mut scatterings) = (0.0, 0, 0);
         let mut numbers = state.sample.stream(state.depth, 0);
         let before = state.throughput;
@@ -102,7 +99,7 @@ impl Path<'_> {
                             let dir = medium.phase.sample(segment.dir, numbers.pair());
                             state.ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
                             (rest, traversed) = (state.ray, 0.0);
-                            (passed, boundary) = (PassedSurfaces::default(), None);
+                            passed = PassedSurfaces::default();
                             (state.prev_vertex, state.camera_distance) = (None, None);
                             state.throughput = before * transmittance;
                             break 'passed;
@@ -110,9 +107,13 @@ impl Path<'_> {
                     }
                     state.throughput = before * transmittance;
                 }
-                let Some(hit) = hit else { return (PathEvent::Escaped, transmittance) };
+                let Some(mut hit) = hit else { return (PathEvent::Escaped, transmittance) };
                 traversed = length;
                 self.world.intersect_into(ray, hit, at);
+                if let Some(contact) = self.world.contact(at) {
+                    hit = contact;
+                    self.world.intersect_into(ray, hit, at);
+                }
                 if let (Some(cone), Some(before)) = (&self.cone, state.camera_distance) {
                     at.width = cone.width_at(before + length);
                 }
@@ -135,19 +136,10 @@ impl Path<'_> {
                 }
                 match self.transition(at, &state.media, lanes) {
                     Some(transition) if self.has_no_effect(at, &transition) => {
-                        boundary = Some((hit.t, std::mem::replace(&mut state.media, transition.behind)));
+                        state.media = transition.behind;
                         passed.pass(&hit);
                     }
                     transition => {
-                        // A boundary that is as close as the rounding errors, such as the bottom of
-                        // smoke on a floor, can lie on either side of the surface. Light that the
-                        // surface reflects starts in front of both.
-                        if let Some((t, media)) = boundary
-                            && transition.is_none()
-                            && (hit.t - t) * stretch <= offset_bound(&at.surface) + gamma(4) * length
-                        {
-                            state.media = media;
-                        }
                         state.camera_distance = state.camera_distance.map(|before| before + length);
                         return (PathEvent::Surface(transition), transmittance);
                     }

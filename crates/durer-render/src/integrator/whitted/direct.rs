@@ -84,7 +84,7 @@ impl Whitted<'_> {
             let blocker = self.world.interaction_along(&ray, hit);
             let parts = self.world.materials_at(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
-            if share == Color::ZERO || layer == MOST_LAYERS {
+            if share == Color::ZERO || layer == MOST_LAYERS || self.world.contact(&blocker).is_some() {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
