@@ -394,7 +394,7 @@ impl Reader<'_> {
     ) -> Option<u32> {
         let key =
             [bsdf.map(|bsdf| bsdf.key()), emitter.map(|emitter| emitter.key), inside.as_ref().map(|inside| inside.1)];
-        let key = (key, self.inside_out, self.hides_backs);
+        let key = (key, [self.inside_out, self.hides_backs]);
         if let Some(cached) = self.material_indices.get(&key) {
             return *cached;
         }
