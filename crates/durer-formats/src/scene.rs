@@ -28,6 +28,8 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     super::pbrt::FORMAT,
     #[cfg(feature = "mitsuba")]
     super::mitsuba::FORMAT,
+    #[cfg(feature = "collada")]
+    super::collada::FORMAT,
     // A USD package is also a ZIP archive, so its extension decides.
     #[cfg(feature = "usd")]
     super::usd::FORMAT,

@@ -46,7 +46,8 @@ const LUMINAIRE: &str = "a measured luminaire (IES)";
 pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     // XML files state their encoding, and the reader of XML converts UTF-16.
-    if (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) && !extensions.contains(&"xml") {
+    let is_xml = extensions.iter().any(|own| matches!(*own, "dae" | "xml"));
+    if (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) && !is_xml {
         // The bytes of the file cannot be shown, so the error has no position.
         let message = format!("`{last}` is text in UTF-16, but the text must be in UTF-8");
         return Some(Diagnostic::error(message).code("syntax").help("save the file as UTF-8 in the text editor"));
