@@ -33,10 +33,14 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#VRML", "VRML", None),
     (b"{\\rtf", "a text of a word processor (RTF)", None),
     (b"\x7fELF", "a program", None),
-    (b"Kaydara FBX Binary", "FBX", None),
+    (b"Kaydara FBX Binary", FBX, None),
+    (b"; FBX", FBX, None),
     (b"PXR-USDC", "binary USD", Some("usdc")),
     (b"#usda", "USD", Some("usda")),
 ];
+
+/// Name of a format that no library in Rust reads completely; see `docs/models.md`.
+const FBX: &str = "FBX";
 
 /// Kind of a photometric file, which describes a light rather than a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
@@ -81,6 +85,9 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         (None, _) if what.contains("word processor") => "save the document as plain text".into(),
         (None, _) if what.contains("archive") => "unpack the archive, which may contain the scene".into(),
         (None, true) => "a picture is not a model; use `--environment` to put the picture around a model".into(),
+        (None, _) if *what == FBX => {
+            "FBX is not supported: import the file into Blender, and export it as glTF (.glb)".into()
+        }
         (None, false) => "this format is not supported: convert the file to glTF".into(),
     }))
 }
@@ -114,7 +121,12 @@ mod tests {
         );
         assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
-        assert!(messages(b"Kaydara FBX Binary", "b.obj", &["obj"]).unwrap().contains("convert the file to glTF"));
+        for fbx in [&b"Kaydara FBX Binary  \0"[..], b"; FBX 7.7.0 project file\n"] {
+            assert!(
+                messages(fbx, "b.fbx", &[]).unwrap().contains("import the file into Blender, and export it as glTF")
+            );
+        }
+        assert!(messages(b"ISO-10303-21;", "b.step", &[]).unwrap().contains("convert the file to glTF"));
         assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("rename the file to `b.usdc`"));
         assert_eq!(messages(b"PK\x03\x04", "b.usdz", &["usda", "usdc", "usdz", "usd"]), None);
         assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
