@@ -66,7 +66,7 @@ use durer_scene::dialect::QuirkSet;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 pub use model::SceneFormat;
-pub use scene::{SCENE_FORMATS, scene_format_for};
+pub use scene::{SCENE_FORMATS, scene_format_for, scene_writer_for};
 use signature::wrong_format_error;
 use std::borrow::Cow;
 

@@ -67,6 +67,13 @@ pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
+/// Returns the writer of the format that a file name indicates by its extension. Returns `None` if
+/// files with this extension are only read.
+pub fn scene_writer_for(name: &str) -> Option<WriteScene> {
+    // Of USD, only text is written.
+    scene_format_for(name)?.write.filter(|_| !matches!(extension(name).as_str(), "usdc" | "usdz"))
+}
+
 /// Returns the format of a model, which is determined by the extension of its name or, if that is
 /// unknown, by its content. Returns `None` if the file is in the scene language or if its format is
 /// unknown.
