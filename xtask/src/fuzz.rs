@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Fuzz targets, with the extensions of their seed files.
-const TARGETS: [(&str, &[&str]); 24] = [
+const TARGETS: [(&str, &[&str]); 25] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -22,6 +22,7 @@ const TARGETS: [(&str, &[&str]); 24] = [
     ("ktx2", &["ktx2"]),
     ("stl", &["stl"]),
     // Also covers Draco and meshopt.
+    ("dae", &["dae"]),
     ("gltf", &["gltf", "glb"]),
     ("json", &["json"]),
     ("pbrt", &["pbrt"]),

@@ -40,8 +40,8 @@ const LIMIT: Duration = Duration::from_secs(240);
 const MEMORY: &str = "4G";
 
 /// Extensions of scenes and models, in lower case.
-const EXTENSIONS: [&str; 14] =
-    ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "usda", "usdc", "usdz", "xml"];
+const EXTENSIONS: [&str; 15] =
+    ["3mf", "dae", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "usda", "usdc", "usdz", "xml"];
 
 /// Commands that render, each with one thread.
 const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";

@@ -18,7 +18,7 @@ const SIDE: u32 = 256;
 const ACROSS: u32 = 6;
 const DOWN: u32 = 5;
 
-const EXTENSIONS: [&str; 9] = ["glb", "gltf", "obj", "ply", "stl", "3mf", "usda", "usdc", "usdz"];
+const EXTENSIONS: [&str; 10] = ["dae", "glb", "gltf", "obj", "ply", "stl", "3mf", "usda", "usdc", "usdz"];
 
 /// Runs `cargo xtask sheet`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {

@@ -120,8 +120,8 @@ fn files() -> Result<Vec<PathBuf>> {
             };
             let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
             let known = [
-                "txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "rif", "3mf", "usda", "usdc", "usdz", "obj", "ply",
-                "stl",
+                "txt", "json", "gltf", "glb", "pbrt", "xml", "dae", "rad", "rif", "3mf", "usda", "usdc", "usdz", "obj",
+                "ply", "stl",
             ];
             match metadata.is_dir() {
                 true => folders.push(path),

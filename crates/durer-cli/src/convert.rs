@@ -14,13 +14,13 @@ use durer::dialect::Dialect;
 use durer::format::asset_export::{AssetFile, sanitize_name};
 use durer::format::course::write;
 use durer::format::scene::Written;
-use durer::format::{json, mesh_format_for, scene_format_for};
+use durer::format::{json, mesh_format_for, scene_format_for, scene_writer_for};
 use durer::image::Destination;
 use durer::load;
 use durer::scene::{DefaultLighting, RenderDefaults, Scene};
 use std::path::{Path, PathBuf};
 
-/// Convert a scene to a dialect, JSON, glTF, pbrt or Mitsuba, or its meshes to PLY, OBJ or STL
+/// Convert a scene to a dialect, JSON, glTF, pbrt, Mitsuba or USD, or its meshes to PLY, OBJ or STL
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert scene.txt -o scene.xml\n  durer convert model.glb -o scene.txt"
@@ -58,11 +58,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
         let message = format!("`.{ending}` files cannot be written: use .txt or .json for a scene");
         let message = format!(
-            "{message}, .pbrt or .xml for pbrt and Mitsuba, .gltf or .glb for a model, and .ply, .obj or .stl for meshes"
+            "{message}, .pbrt, .xml or .usda for pbrt, Mitsuba and USD, .gltf or .glb for a model, and .ply, .obj or .stl for meshes"
         );
         return Err(invalid_input(message));
     }
-    let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
+    let as_scene = scene_format_for(&name).filter(|_| scene_writer_for(&name).is_some() && args.to.is_none());
     // Write only the model, because the renderer adds a missing camera and lights later. Other
     // programs do not.
     options.scene_defaults.convert_only = as_scene.is_some_and(|format| !format.is_complete_scene);
@@ -156,7 +156,7 @@ fn save_all(
 
 /// Returns true if files with this name can be read but not written.
 fn is_only_read(name: &str) -> bool {
-    mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
+    mesh_format_for(name).is_none() && scene_format_for(name).is_some() && scene_writer_for(name).is_none()
 }
 
 /// Returns the render options stored in a file, if there are any.

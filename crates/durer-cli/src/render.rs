@@ -30,8 +30,9 @@ use std::path::Path;
   cat scene.txt | durer render - -o - > picture.png
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-SCENE is a file in the course's language or a model: glTF, GLB, USD, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model
-without a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words of the language.
+SCENE is a file in the course's language or a model: glTF, GLB, USD, pbrt, Mitsuba, Radiance, COLLADA, 3MF, PLY, OBJ,
+STL. A model without a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words
+of the language.
 
 The extension of PICTURE selects the format: png, jpg, webp, exr, hdr, tga, bmp, ppm, pfm. Several pictures are written as
 layers of one EXR file, or as separate files: picture.depth.png and so on. SCENE `-` is read from standard input, and

@@ -9,6 +9,8 @@
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
+#[cfg(feature = "collada")]
+mod collada;
 pub mod course;
 pub mod curve;
 mod decoder;
@@ -53,7 +55,7 @@ mod threemf;
 #[cfg(feature = "usd")]
 mod usd;
 pub mod vol;
-#[cfg(any(feature = "mitsuba", feature = "threemf"))]
+#[cfg(any(feature = "collada", feature = "mitsuba", feature = "threemf"))]
 mod xml;
 #[cfg(any(feature = "threemf", feature = "usd"))]
 mod zip;
@@ -64,7 +66,7 @@ use durer_scene::dialect::QuirkSet;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 pub use model::SceneFormat;
-pub use scene::{SCENE_FORMATS, scene_format_for};
+pub use scene::{SCENE_FORMATS, scene_format_for, scene_writer_for};
 use signature::wrong_format_error;
 use std::borrow::Cow;
 

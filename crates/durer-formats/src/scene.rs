@@ -28,6 +28,8 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     super::pbrt::FORMAT,
     #[cfg(feature = "mitsuba")]
     super::mitsuba::FORMAT,
+    #[cfg(feature = "collada")]
+    super::collada::FORMAT,
     // A USD package is also a ZIP archive, so its extension decides.
     #[cfg(feature = "usd")]
     super::usd::FORMAT,
@@ -63,6 +65,13 @@ const MAX_ROWS: u32 = 2048;
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     let extension = extension(name);
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+}
+
+/// Returns the writer of the format that a file name indicates by its extension. Returns `None` if
+/// files with this extension are only read.
+pub fn scene_writer_for(name: &str) -> Option<WriteScene> {
+    // Of USD, only text is written.
+    scene_format_for(name)?.write.filter(|_| !matches!(extension(name).as_str(), "usdc" | "usdz"))
 }
 
 /// Returns the format of a model, which is determined by the extension of its name or, if that is

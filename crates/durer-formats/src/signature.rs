@@ -33,10 +33,14 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#VRML", "VRML", None),
     (b"{\\rtf", "a text of a word processor (RTF)", None),
     (b"\x7fELF", "a program", None),
-    (b"Kaydara FBX Binary", "FBX", None),
+    (b"Kaydara FBX Binary", FBX, None),
+    (b"; FBX", FBX, None),
     (b"PXR-USDC", "binary USD", Some("usdc")),
     (b"#usda", "USD", Some("usda")),
 ];
+
+/// Name of a format that no library in Rust reads completely; see `docs/models.md`.
+const FBX: &str = "FBX";
 
 /// Kind of a photometric file, which describes a light rather than a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
@@ -46,7 +50,8 @@ const LUMINAIRE: &str = "a measured luminaire (IES)";
 pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     // XML files state their encoding, and the reader of XML converts UTF-16.
-    if (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) && !extensions.contains(&"xml") {
+    let is_xml = extensions.iter().any(|own| matches!(*own, "dae" | "xml"));
+    if (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) && !is_xml {
         // The bytes of the file cannot be shown, so the error has no position.
         let message = format!("`{last}` is text in UTF-16, but the text must be in UTF-8");
         return Some(Diagnostic::error(message).code("syntax").help("save the file as UTF-8 in the text editor"));
@@ -80,6 +85,9 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         (None, _) if what.contains("word processor") => "save the document as plain text".into(),
         (None, _) if what.contains("archive") => "unpack the archive, which may contain the scene".into(),
         (None, true) => "a picture is not a model; use `--environment` to put the picture around a model".into(),
+        (None, _) if *what == FBX => {
+            "FBX is not supported: import the file into Blender, and export it as glTF (.glb)".into()
+        }
         (None, false) => "this format is not supported: convert the file to glTF".into(),
     }))
 }
@@ -113,7 +121,12 @@ mod tests {
         );
         assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
-        assert!(messages(b"Kaydara FBX Binary", "b.obj", &["obj"]).unwrap().contains("convert the file to glTF"));
+        for fbx in [&b"Kaydara FBX Binary  \0"[..], b"; FBX 7.7.0 project file\n"] {
+            assert!(
+                messages(fbx, "b.fbx", &[]).unwrap().contains("import the file into Blender, and export it as glTF")
+            );
+        }
+        assert!(messages(b"ISO-10303-21;", "b.step", &[]).unwrap().contains("convert the file to glTF"));
         assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("rename the file to `b.usdc`"));
         assert_eq!(messages(b"PK\x03\x04", "b.usdz", &["usda", "usdc", "usdz", "usd"]), None);
         assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));

@@ -54,6 +54,13 @@ pub(super) enum Event<'a> {
     End,
 }
 
+/// An [`Event`], or text inside an element.
+pub(super) enum Content<'a> {
+    Event(Event<'a>),
+    /// Text with its entities replaced, and the span of its source.
+    Text(Cow<'a, str>, Span),
+}
+
 impl<'a> Tag<'a> {
     /// Returns the attribute that has this name.
     pub fn get(&self, name: &str) -> Option<&Attribute<'a>> {
@@ -132,11 +139,20 @@ impl<'a> Xml<'a> {
         Diagnostic::error(message).code("bad-file").at(at)
     }
 
-    /// Returns the next parser event.
+    /// Returns the next parser event, and skips text.
     pub fn next(&mut self) -> Result<Event<'a>, Box<Diagnostic>> {
+        loop {
+            if let Content::Event(event) = self.next_content()? {
+                return Ok(event);
+            }
+        }
+    }
+
+    /// Returns the next parser event or text. Comments split a text.
+    pub fn next_content(&mut self) -> Result<Content<'a>, Box<Diagnostic>> {
         if std::mem::take(&mut self.empty) {
             self.open.pop();
-            return Ok(Event::Close);
+            return Ok(Content::Event(Event::Close));
         }
         loop {
             let start = self.reader.buffer_position() as usize;
@@ -146,14 +162,31 @@ impl<'a> Xml<'a> {
             };
             let end = self.reader.buffer_position() as usize;
             match event {
-                events::Event::Start(_) => return self.tag(start + 1, end - 1).map(Event::Open),
+                events::Event::Start(_) => {
+                    return self.tag(start + 1, end - 1).map(|tag| Content::Event(Event::Open(tag)));
+                }
                 events::Event::Empty(_) => {
                     self.empty = true;
-                    return self.tag(start + 1, end - 2).map(Event::Open);
+                    return self.tag(start + 1, end - 2).map(|tag| Content::Event(Event::Open(tag)));
                 }
                 events::Event::End(_) => {
                     self.open.pop();
-                    return Ok(Event::Close);
+                    return Ok(Content::Event(Event::Close));
+                }
+                events::Event::Text(_) => {
+                    let raw = self.text.get(start..end).unwrap_or_default();
+                    return Ok(Content::Text(Cow::Borrowed(raw), self.span(start, end)));
+                }
+                events::Event::CData(_) => {
+                    let raw = self.text.get(start..end).unwrap_or_default();
+                    let inner = raw.strip_prefix("<![CDATA[").and_then(|raw| raw.strip_suffix("]]>"));
+                    return Ok(Content::Text(Cow::Borrowed(inner.unwrap_or_default()), self.span(start, end)));
+                }
+                events::Event::GeneralRef(_) => {
+                    let raw = self.text.get(start..end).unwrap_or_default();
+                    // An unknown entity in text stays as it is, since most texts are skipped.
+                    let text = escape::unescape(raw).unwrap_or(Cow::Borrowed(raw));
+                    return Ok(Content::Text(text, self.span(start, end)));
                 }
                 events::Event::DocType(_) => {
                     let what = "document type declarations (`<!DOCTYPE`) are not supported";
@@ -166,10 +199,10 @@ impl<'a> Xml<'a> {
                         None if !self.has_root_element => {
                             Err(self.wrong(self.span(0, 0), "the file has no elements").into())
                         }
-                        None => Ok(Event::End),
+                        None => Ok(Content::Event(Event::End)),
                     };
                 }
-                // Text, comments, and processing instructions are skipped.
+                // Comments and processing instructions are skipped.
                 _ => {}
             }
         }

@@ -1,5 +1,5 @@
-//! Tests that scenes written for pbrt and Mitsuba are read again without warnings, and give the
-//! same picture.
+//! Tests that scenes written for pbrt, Mitsuba and USD are read again without warnings, and give
+//! the same picture.
 
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;
@@ -120,4 +120,10 @@ fn scenes_written_for_mitsuba_give_the_same_picture() {
 fn scenes_written_for_pbrt_give_the_same_picture() {
     let compared = compare_all("pbrt");
     assert!(compared >= 8, "{compared}");
+}
+
+#[test]
+fn scenes_written_for_usd_give_the_same_picture() {
+    let compared = compare_all("usda");
+    assert!(compared >= 5, "{compared}");
 }

@@ -267,7 +267,7 @@ fn seeds_hold() {
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "off" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
-                "gltf" | "pbrt" | "rad" | "xml" => model(&data, &format!("x.{name}")),
+                "dae" | "gltf" | "pbrt" | "rad" | "xml" => model(&data, &format!("x.{name}")),
                 "threemf" => model(&data, "x.3mf"),
                 "usd" => model(&data, usd_name(&data)),
                 _ => picture(&data, &format!("x.{name}")),

@@ -13,7 +13,7 @@ use durer_formats::folder::FolderSource;
 use durer_formats::gzip::{decompress, is_gzip};
 use durer_formats::json;
 use durer_formats::scene::{
-    ReadInput, WriteContext, Written, find_scene_format, other_format, read_model, scene_format_for,
+    ReadInput, WriteContext, Written, find_scene_format, other_format, read_model, scene_writer_for,
 };
 use durer_render::compile::{AccelKind, AssetCache, Resources, compile};
 use durer_render::threads;
@@ -267,7 +267,7 @@ impl LoadedScene {
     /// Converts the scene to the format that the extension of `name` selects. Returns `None` if the
     /// scene cannot be written. Adds a warning for everything that the format cannot express.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Written> {
-        let write = scene_format_for(name)?.write?;
+        let write = scene_writer_for(name)?;
         let output = WriteContext {
             name,
             source: &self.source,

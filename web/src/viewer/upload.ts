@@ -6,7 +6,7 @@ export interface Upload {
   file: File;
 }
 
-const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|off|pbrt|xml|3mf|rad|oct|usd[acz]?)$/i;
+const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|off|pbrt|xml|dae|3mf|rad|oct|usd[acz]?)$/i;
 
 /** Returns the files that were dropped, including those in dropped folders. */
 export async function droppedFiles(items: Iterable<DataTransferItem>): Promise<Upload[]> {

@@ -25,8 +25,10 @@ const SECONDS: u64 = 20;
 const SPACE: u64 = 4_000_000;
 const MEMORY: u64 = 256 << 20;
 
-const SCENES: [&str; 15] =
-    ["txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "3mf", "usda", "usdc", "usdz", "obj", "off", "ply", "stl"];
+const SCENES: [&str; 16] = [
+    "txt", "json", "gltf", "glb", "pbrt", "xml", "dae", "rad", "3mf", "usda", "usdc", "usdz", "obj", "off", "ply",
+    "stl",
+];
 const PICTURES: [&str; 11] = ["png", "bmp", "tga", "ppm", "pfm", "hdr", "exr", "jpg", "jpeg", "webp", "ktx2"];
 
 /// Returns the original files: small files of the repository and the corpus, and seeds of the fuzz

@@ -21,8 +21,9 @@ pub(crate) enum PunctualLight {
     /// Light in a cone; the angles in degrees from the axis are those of the edge and of the
     /// beginning of the fade.
     Spot { position: Vec3, direction: Vec3, intensity: Color, angle: f32, inner_angle: f32, fade: Fade },
-    /// Light from far away, with its irradiance on a surface that faces it.
-    Distant { direction: Vec3, irradiance: Color },
+    /// Light from far away, with its irradiance on a surface that faces it, and the angle in
+    /// degrees from the centre of its disc to the edge.
+    Distant { direction: Vec3, irradiance: Color, spread: f32 },
 }
 
 /// Light from all around.
@@ -47,7 +48,8 @@ impl Export<'_> {
             lights.filter_map(|light| self.punctual_light(&light.value, program)).collect();
         if let Some((direction, irradiance)) = self.scene.background.sunlight() {
             self.warn_extent(program);
-            lights.push(PunctualLight::Distant { direction: direction.normalize_or(Vec3::NEG_Y), irradiance });
+            let direction = direction.normalize_or(Vec3::NEG_Y);
+            lights.push(PunctualLight::Distant { direction, irradiance, spread: 0.0 });
         }
         lights
     }
@@ -87,11 +89,12 @@ impl Export<'_> {
                 Some(PunctualLight::Point { position: point.position, intensity: PI * intensity })
             }
             Light::Directional(far) => {
-                if far.spread.unwrap_or(0.0) > 0.0 {
+                let spread = far.spread.unwrap_or(0.0);
+                if spread > 0.0 && !self.has_sun_size {
                     self.warn_extent(program);
                 }
                 let direction = far.direction.normalize_or(Vec3::NEG_Y);
-                Some(PunctualLight::Distant { direction, irradiance: PI * far.color })
+                Some(PunctualLight::Distant { direction, irradiance: PI * far.color, spread })
             }
             Light::Spot(spot) => Some(PunctualLight::Spot {
                 position: spot.position,

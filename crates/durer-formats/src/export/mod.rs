@@ -1,21 +1,23 @@
 //! Steps shared by the writers of scene formats: reports of losses, files beside the scene, placed
 //! shapes, materials reduced to simple surfaces, and light from all around.
 
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod camera;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "gltf", feature = "usd"))]
+pub(crate) mod layers;
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod light;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod metal;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 mod phong;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod picture;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 mod principled;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod shape;
-#[cfg(any(feature = "mitsuba", feature = "pbrt"))]
+#[cfg(any(feature = "mitsuba", feature = "pbrt", feature = "usd"))]
 pub(crate) mod surface;
 
 use crate::asset_export::{AssetFile, free_name, sanitize_name};
@@ -34,6 +36,8 @@ use std::sync::Arc;
 pub(crate) struct Export<'a> {
     pub scene: &'a Scene,
     pub context: &'a WriteContext<'a>,
+    /// True if the format has distant lights with an angular size.
+    pub has_sun_size: bool,
     diagnostics: &'a mut Diagnostics,
     reported: BTreeSet<String>,
     files: Vec<AssetFile>,
@@ -46,7 +50,7 @@ pub(crate) struct Export<'a> {
 impl<'a> Export<'a> {
     pub fn new(scene: &'a Scene, context: &'a WriteContext<'a>, diagnostics: &'a mut Diagnostics) -> Self {
         let (reported, files, used_names, paths) = Default::default();
-        Export { scene, context, diagnostics, reported, files, used_names, paths }
+        Export { scene, context, has_sun_size: false, diagnostics, reported, files, used_names, paths }
     }
 
     /// Warns about content that is lost or changed, once for each message.
@@ -84,7 +88,7 @@ impl<'a> Export<'a> {
     }
 
     /// Returns the bytes of a file that the scene names, or of a picture in memory.
-    #[cfg(any(feature = "gltf", feature = "mitsuba", feature = "pbrt"))]
+    #[cfg(any(feature = "gltf", feature = "mitsuba", feature = "pbrt", feature = "usd"))]
     pub fn picture_bytes(&self, picture: &PictureBytes) -> Option<Arc<[u8]>> {
         match picture {
             PictureBytes::Memory(_, bytes) => Some(bytes.clone()),

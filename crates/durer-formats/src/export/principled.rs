@@ -166,7 +166,7 @@ impl Export<'_> {
     }
 
     /// Returns the rows of a spectrum, which is a file or the name of an illuminant.
-    pub(super) fn spectrum(&self, name: &FileName) -> Option<Vec<[f32; 2]>> {
+    pub(crate) fn spectrum(&self, name: &FileName) -> Option<Vec<[f32; 2]>> {
         let (path, column) = match name.path.rsplit_once(':') {
             Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
             _ => (&name.path[..], None),

@@ -152,8 +152,20 @@ impl<'a> Export<'a> {
     }
 
     /// Returns the triangles of a shape in its own space, with all normals. Normals are left out if
-    /// the triangles are flat.
+    /// the triangles are flat. Only what most programs read is kept.
     pub fn triangles(&mut self, shape: &Placed, program: &str) -> Option<MeshData> {
+        let mut shaded = self.whole_triangles(shape, program)?;
+        shaded.second_uvs.clear();
+        if !shaded.colors.is_empty() && shaded.colors.iter().any(|color| *color != [1.0; 4]) {
+            self.warn_lost(format!("vertex colours are not written to {program}: they are left out"));
+        }
+        shaded.colors.clear();
+        Some(shaded)
+    }
+
+    /// Returns the triangles of a shape as [`Export::triangles`] does, with the second texture
+    /// coordinates and the colours of vertices.
+    pub fn whole_triangles(&mut self, shape: &Placed, program: &str) -> Option<MeshData> {
         let data = match shape.geometry {
             Geometry::Mesh(name) => self.mesh_data(name)?,
             Geometry::Primitive(Primitive::Plane(plane)) => {
@@ -186,12 +198,7 @@ impl<'a> Export<'a> {
             shaded.normals.clear();
         }
         shaded.flat = shaded.triangle_normals.is_empty();
-        // Keep only what other programs read.
-        (shaded.second_uvs, shaded.tangents, shaded.vertices) = Default::default();
-        if !shaded.colors.is_empty() && shaded.colors.iter().any(|color| *color != [1.0; 4]) {
-            self.warn_lost(format!("vertex colours are not written to {program}: they are left out"));
-        }
-        shaded.colors.clear();
+        (shaded.tangents, shaded.vertices) = Default::default();
         Some(shaded)
     }
 

@@ -219,7 +219,8 @@ impl Export<'_> {
         }
     }
 
-    fn emission(&mut self, m: &PrincipledMaterial) -> Option<Emission> {
+    /// Returns the radiance that a material emits.
+    pub fn emitted(&mut self, m: &PrincipledMaterial) -> Vec3 {
         let mut color = m.emission_color;
         if let Some(name) = &m.emission_spectrum {
             match self.light_spectrum(name) {
@@ -227,8 +228,13 @@ impl Export<'_> {
                 None => self.warn_lost(format!("the spectrum `{}` is left out", name.path)),
             }
         }
+        m.emission_luminance * color.max(Vec3::ZERO)
+    }
+
+    fn emission(&mut self, m: &PrincipledMaterial) -> Option<Emission> {
+        let radiance = self.emitted(m);
         (m.emission_luminance > 0.0).then(|| Emission {
-            radiance: m.emission_luminance * color.max(Vec3::ZERO),
+            radiance,
             picture: m.emission_texture.as_ref().map(|name| self.picture(name)),
             is_two_sided: m.walls == Walls::Thin,
         })

@@ -8,7 +8,7 @@ use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::tube::{Piece, add_tube, from_b_spline, sample_curve, straight, with_round_caps};
-use glam::DVec4;
+use glam::{DAffine3, DVec4};
 use std::ops::Range;
 
 /// Maximum total number of segments of all curves, and the number of segments above which tubes
@@ -16,23 +16,28 @@ use std::ops::Range;
 const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 
-/// Builds tubes around the curves in a file, which are B-splines or polylines.
+/// Builds tubes around the curves in a file, which are B-splines or polylines. `to_world` moves
+/// their points, but leaves their radii.
 pub(super) fn tubes(
     input: &ReadInput,
     report: &SharedReport,
     (path, at): (&str, Span),
     is_spline: bool,
+    to_world: DAffine3,
 ) -> Option<MeshData> {
     let (bytes, file) = read_named(input, report, "the curves", path, at)?;
     let wrong = |(at, message): ParseError| {
         let span = Span { file, start: at.start as u32, end: at.end as u32 };
         report.push(Diagnostic::error(message).code("bad-file").at(span));
     };
-    let curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
+    let mut curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
     let count = curves.iter().map(Vec::len).sum();
     if count > MAX_PIECES {
         report.unsupported_once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
         return None;
+    }
+    for point in curves.iter_mut().flatten().flatten() {
+        *point = to_world.transform_point3(point.truncate()).extend(point.w);
     }
     let mut data = MeshData::default();
     let is_round = !is_spline && count <= MANY;

@@ -3,6 +3,7 @@
 use super::plugin::Key;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
+use durer_scene::material::principled::Walls;
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::TextureImage;
@@ -49,6 +50,22 @@ impl MaterialDef {
                 m.opacity_texture = picture.clone();
             }
         })
+    }
+
+    /// Returns a material that lets light through from behind, as if the surface were not there.
+    /// Glass and hair stay as they are.
+    pub fn with_hidden_backs(self: &Rc<MaterialDef>) -> Rc<MaterialDef> {
+        let is_opaque = match &**self {
+            MaterialDef::Principled(m) => m.transmission_weight == 0.0 && m.walls == Walls::Solid,
+            MaterialDef::Mix(..) => true,
+            MaterialDef::TwoSided(front, _) => return front.with_hidden_backs(),
+            MaterialDef::Hair(_) | MaterialDef::Null => false,
+        };
+        if !is_opaque {
+            return self.clone();
+        }
+        let nothing = PrincipledMaterial { opacity: 0.0, ..matte(Vec3::ZERO) };
+        Rc::new(MaterialDef::TwoSided(self.clone(), Rc::new(MaterialDef::Principled(Box::new(nothing)))))
     }
 
     /// Returns a copy in which `change` has been applied to each `PrincipledMaterial`.

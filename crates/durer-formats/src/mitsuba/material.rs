@@ -398,7 +398,7 @@ impl Reader<'_> {
     ) -> Option<u32> {
         let key =
             [bsdf.map(|bsdf| bsdf.key()), emitter.map(|emitter| emitter.key), inside.as_ref().map(|inside| inside.1)];
-        let key = (key, self.inside_out);
+        let key = (key, [self.inside_out, self.hides_backs]);
         if let Some(cached) = self.material_indices.get(&key) {
             return *cached;
         }
@@ -407,6 +407,9 @@ impl Reader<'_> {
         let mut material = bsdf.map_or_else(|| Rc::new(MaterialDef::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
             material = Rc::new(with_medium(&material, &medium));
+        }
+        if self.hides_backs {
+            material = material.with_hidden_backs();
         }
         let at = bsdf.map_or(at, |bsdf| bsdf.at);
         let number = if self.has_room_for(&material, at) { self.add_material(&material, emitter, at) } else { None };

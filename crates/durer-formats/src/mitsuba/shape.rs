@@ -75,6 +75,7 @@ impl Reader<'_> {
             let area_emitter = self.child_plugins(plugin, Some("emitter")).into_iter().next();
             let area_emitter = area_emitter.and_then(|(_, emitter)| self.area_light(&emitter));
             self.inside_out = matches!(node, ObjectKind::Primitive(_)) && is_inside_out(plugin, report);
+            self.hides_backs = plugin.kind.ends_with("curve");
             let material = self.child_plugins(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
             match self.material_index(material.as_ref(), area_emitter.as_ref(), inside, at) {
                 Some(number) => {
@@ -308,13 +309,19 @@ impl Reader<'_> {
         })
     }
 
-    /// Builds tubes for the curves in a file.
+    /// Builds tubes for the curves in a file. Mitsuba's `to_world` does not scale their radii.
     fn curves(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
         let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
-        let key = if is_spline { path.clone() } else { format!("{path}#linear") };
-        self.mesh(plugin, &key, to_world, || curve::tubes(input, report, (&path, at), is_spline))
+        let mut key = if is_spline { path.clone() } else { format!("{path}#linear") };
+        let is_rigid = (to_world.matrix3.transpose() * to_world.matrix3).abs_diff_eq(DMat3::IDENTITY, 1e-6)
+            && to_world.matrix3.determinant() > 0.0;
+        let (inner, outer) = if is_rigid { (DAffine3::IDENTITY, to_world) } else { (to_world, DAffine3::IDENTITY) };
+        if !is_rigid {
+            key += &format!("#{:?}", inner.to_cols_array());
+        }
+        self.mesh(plugin, &key, outer, || curve::tubes(input, report, (&path, at), is_spline, inner))
     }
 
     /// Returns a mesh and its transform. As in Mitsuba, v = 0 is the upper edge of a picture.

@@ -18,6 +18,9 @@ use std::sync::Arc;
 /// Maximum depth of nested plugins, including plugins that are nested by reference.
 pub(super) const MAX_DEPTH: u32 = 32;
 
+/// Keys of the plugins of a material, and two flags of the shape that uses it.
+type MaterialKey = ([Option<Key>; 3], [bool; 2]);
+
 /// Reader that converts the plugins of a Mitsuba scene to a Dürer scene.
 pub(super) struct Reader<'a> {
     pub input: &'a ReadInput<'a>,
@@ -27,8 +30,8 @@ pub(super) struct Reader<'a> {
     /// turned inside out.
     pub materials: BTreeMap<(Key, bool), Rc<MaterialDef>>,
     /// Indices of materials in the scene, by the plugins of the material, the light and the
-    /// interior medium. The flag is true if the shape is turned inside out.
-    pub material_indices: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
+    /// interior medium, and by `inside_out` and `hides_backs` of the shape.
+    pub material_indices: BTreeMap<MaterialKey, Option<u32>>,
     /// Meshes by file name and by the changes that were applied to them.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// Contents of shape groups, with the number of objects in each group.
@@ -36,6 +39,8 @@ pub(super) struct Reader<'a> {
     /// True if the current shape is turned inside out, so that the interior index of refraction of
     /// its glass applies outside it.
     pub inside_out: bool,
+    /// True if rays pass through the current shape from behind, as they do in Mitsuba's curves.
+    pub hides_backs: bool,
     pub infinite: Option<InfiniteLight>,
     pub scene: Scene,
 }
@@ -51,6 +56,7 @@ impl<'a> Reader<'a> {
             meshes: BTreeMap::new(),
             groups: BTreeMap::new(),
             inside_out: false,
+            hides_backs: false,
             infinite: None,
             scene: Scene::default(),
         }

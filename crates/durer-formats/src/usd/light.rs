@@ -24,7 +24,14 @@ impl Reader<'_, '_> {
     /// Adds a light.
     pub fn light(&mut self, prim: &Prim, kind: &str, to_world: DAffine3, objects: &mut Vec<Object>) {
         let (report, at) = (self.stage.files.report, prim.span());
-        let Some((radiance, spectrum)) = self.radiance(prim, kind) else { return };
+        let Some((radiance, spectrum)) = self.radiance(prim, kind) else {
+            // A black dome states that nothing is around the scene.
+            if kind.starts_with("DomeLight") && !self.has_dome {
+                (self.has_dome, self.scene.is_lit, self.scene.background_span) = (true, true, at);
+                self.scene.background.color = Vec3::ZERO;
+            }
+            return;
+        };
         self.scene.is_lit = true;
         if kind.starts_with("DomeLight") {
             return self.dome(prim, radiance, to_world);

@@ -1,5 +1,5 @@
 //! Reader of OpenUSD scenes: text (`.usda`), binary (`.usdc`) and packages (`.usdz`), with
-//! sublayers, references, payloads, inheritance and variants.
+//! sublayers, references, payloads, inheritance and variants. `write/` writes text.
 //!
 //! Sources: *OpenUSD specification* and *OpenUSD documentation* (UsdGeom, UsdLux, UsdShade);
 //! *UsdPreviewSurface Specification*, version 2.6.
@@ -28,6 +28,7 @@ mod text;
 mod time;
 mod transform;
 mod traverse;
+mod write;
 
 use super::growth::ResourceLimits;
 use super::model::{ReadInput, SceneFormat};
@@ -48,7 +49,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     extensions: &["usda", "usdc", "usdz", "usd"],
     recognise,
     read,
-    write: None,
+    write: Some(write::write),
     up: Axis::Y,
     is_complete_scene: false,
     light_hint: Some("add a light, for example `def DomeLight \"Light\" {}`"),

@@ -51,7 +51,7 @@ pub(super) fn refuse_for_model(format: &str, options: &SceneDefaults, diagnostic
 const CODE: &str = "model-option";
 
 /// Extensions of the formats in which a file can have several cameras.
-const HAVE_CAMERAS: &[&str] = &["gltf", "usd", "xml", "rif"];
+const HAVE_CAMERAS: &[&str] = &["gltf", "usd", "dae", "xml", "rif"];
 
 #[cfg(test)]
 mod tests {

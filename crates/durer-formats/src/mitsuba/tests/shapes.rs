@@ -2,7 +2,7 @@
 
 use super::{clean, clean_in, folder, material, mesh, objects, read_in};
 use crate::mitsuba::serialized::tests::{file, stream};
-use durer_scene::material::HairMaterial;
+use durer_scene::material::{HairMaterial, PatternMaterial};
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::{Material, MatrixOp, MatrixRules, ObjectKind, Scene};
 
@@ -290,6 +290,40 @@ fn disk_uv_goes_outwards_and_around() {
     assert!(data.positions.iter().zip(&data.tangents).all(outwards));
     // A disk that has no picture becomes a `Disc`.
     assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
+}
+
+#[test]
+fn curves_keep_their_radius_and_are_seen_from_outside_only() {
+    let files: &[(&str, &[u8])] = &[("line.txt", b"0 0 0 .1\n1 0 0 .1\n2 0 0 .1\n3 0 0 .1\n")];
+    // Ends of the mesh, which a rotation leaves to the object.
+    for (steps, from, to) in [
+        ("<scale value='3'/>", 3.0, 6.0),
+        ("<scale x='2' y='5' z='-1'/>", 2.0, 4.0),
+        ("<rotate z='1' angle='30'/><translate y='2'/>", 1.0, 2.0),
+    ] {
+        let scene = clean_in(
+            files,
+            &format!(
+                "<shape type='bsplinecurve'><string name='filename' value='line.txt'/>\
+                 <transform name='to_world'>{steps}</transform><bsdf type='diffuse'/></shape>"
+            ),
+        );
+        let ends =
+            |k: usize| mesh(&scene).positions.iter().fold([9.0_f32, -9.0], |[a, b], p| [a.min(p[k]), b.max(p[k])]);
+        for ([a, b], [from, to]) in [(ends(0), [from, to]), (ends(1), [-0.1, 0.1]), (ends(2), [-0.1, 0.1])] {
+            assert!((a - from).abs() < 0.001 && (b - to).abs() < 0.001, "{steps}: {a} {b}");
+        }
+        // A ray from inside meets nothing.
+        let numbers = scene.materials.iter().find_map(|material| match &material.value {
+            Material::Solid(PatternMaterial::TwoSided(sides), _) => Some([sides.material1, sides.material2]),
+            _ => None,
+        });
+        let opacity = numbers.unwrap().map(|number| match &scene.materials[number as usize].value {
+            Material::Principled(layers) => layers.opacity,
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(opacity, [1.0, 0.0]);
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ impl Writer<'_> {
                 let light = Element::plugin("emitter", "point").vector("point", "position", position.to_array());
                 light.rgb("intensity", intensity)
             }
-            PunctualLight::Distant { direction, irradiance } => {
+            PunctualLight::Distant { direction, irradiance, .. } => {
                 let light = Element::plugin("emitter", "directional");
                 light.vector("vector", "direction", direction.to_array()).rgb("irradiance", irradiance)
             }

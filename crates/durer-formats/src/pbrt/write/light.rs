@@ -41,7 +41,7 @@ impl Writer<'_> {
             PunctualLight::Point { position, intensity } => {
                 source("point").rgb("I", intensity).point("from", position).line()
             }
-            PunctualLight::Distant { direction, irradiance } => {
+            PunctualLight::Distant { direction, irradiance, .. } => {
                 source("distant").rgb("L", irradiance).point("from", -direction).point("to", Default::default()).line()
             }
             PunctualLight::Spot { position, direction, intensity, angle, inner_angle, fade } => {

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// Number of sides of a tube, for a few tubes and for many tubes. The mean width of a tube with
 /// this many sides is that of a round tube.
-const SIDES: [u32; 2] = [12, 6];
+const SIDES: [u32; 2] = [24, 6];
 
 /// Number of segments of a hemisphere from its rim to its pole.
 const CAP: u32 = 4;
@@ -73,7 +73,10 @@ pub fn sample_curve(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
             let (point, chord) = (abc.lerp(bcd, t), (p[3] - p[0]).normalize_or(DVec3::X));
             let along = (bcd - abc).truncate().normalize_or(chord);
             let u = (i as f64 + t) / pieces.len() as f64;
-            all.push(CurvePoint { point: point.truncate(), along, width: point.w, lean: 0.0, u, segment: i, t });
+            // The radius grows by this much per unit of length.
+            let slope = 0.5 * (bcd - abc).w / (bcd - abc).truncate().length();
+            let lean = if slope.is_finite() { -slope / (1.0 + slope * slope).sqrt() } else { 0.0 };
+            all.push(CurvePoint { point: point.truncate(), along, width: point.w, lean, u, segment: i, t });
         }
     }
     all
@@ -99,7 +102,7 @@ pub fn with_round_caps(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
 pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
-    // The radius is halfway between the radii of the inscribed and the circumscribed polygon.
+    // A polygon is as wide on average over all directions as a circle of the same circumference.
     let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
     // Each entry of `circle` is a fraction of a turn, with its sine and cosine.
     let circle: Vec<(f64, (f64, f64))> = (0..=sides)
@@ -179,4 +182,49 @@ pub fn with_widths(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece>
     let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
     let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));
     pieces.iter().enumerate().map(wide).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Builds the tube of a straight fibre from z = 0 to z = 3, with a width at each end.
+    fn fibre([from, to]: [f64; 2], many: bool) -> MeshData {
+        let mut data = MeshData::default();
+        let line = straight([DVec4::new(0.0, 0.0, 0.0, from), DVec4::new(0.0, 0.0, 3.0, to)]);
+        add_tube(&mut data, &sample_curve(&[line], 1), many);
+        data
+    }
+
+    #[test]
+    fn a_fibre_covers_the_area_of_a_round_one() {
+        // A fibre of length 3 and width 0.2 covers 0.6 seen from the side.
+        for (many, worst) in [(false, 0.006), (true, 0.1)] {
+            let data = fibre([0.2, 0.2], many);
+            let widths: Vec<f64> = (0..720)
+                .map(|k| {
+                    let (sin, cos) = fp::sin_cos_degrees(0.5 * f64::from(k));
+                    let side = |p: &glam::Vec3| cos * f64::from(p.x) + sin * f64::from(p.y);
+                    let (low, high) = data
+                        .positions
+                        .iter()
+                        .map(side)
+                        .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+                    high - low
+                })
+                .collect();
+            let area = 3.0 * widths.iter().sum::<f64>() / widths.len() as f64;
+            assert!((area - 0.6).abs() < 1e-4 * 0.6, "{area}");
+            assert!(widths.iter().all(|width| (width / 0.2 - 1.0).abs() < worst), "{widths:?}");
+        }
+    }
+
+    #[test]
+    fn normals_of_a_tapered_fibre_are_those_of_a_cone() {
+        // The radius falls from 0.4 to 0.1 over a length of 3.
+        let length = (3.0_f64 * 3.0 + 0.3 * 0.3).sqrt();
+        let data = fibre([0.8, 0.2], false);
+        assert!(data.normals.iter().all(|n| (f64::from(n.z) - 0.3 / length).abs() < 1e-6));
+        assert!(data.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
+    }
 }
