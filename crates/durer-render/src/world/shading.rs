@@ -1,6 +1,6 @@
 //! BSDFs and emission at surface points, used for path tracing.
 
-use super::{Geometry, Material, Object, Phong, SurfaceInteraction, WeightedMaterial, World};
+use super::{Geometry, Material, Object, Phong, Principled, SurfaceInteraction, WeightedMaterial, World};
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use crate::world::material::Emission;

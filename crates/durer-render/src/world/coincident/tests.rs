@@ -41,7 +41,7 @@ fn floors_below_passed_surfaces_are_not_lost() {
     let floor = "MaterialIndex 3 Rectangle { corner -2 0 2 edge0 4 0 0 edge1 0 0 -4 }";
     for other in [
         "MaterialIndex 1 Box { min -0.5 0 -0.5 max 0.5 1 0.5 }",
-        "MaterialIndex 1 Transform { Rotate 0 1 0 30 Box { min -0.5 0 -0.5 max 0.5 1 0.5 } }",
+        "MaterialIndex 1 Transform { Rotate { 0 1 0 30 } Box { min -0.5 0 -0.5 max 0.5 1 0.5 } }",
         "MaterialIndex 2 Rectangle { corner -0.5 0 0.5 edge0 1 0 0 edge1 0 0 -1 }",
         "MaterialIndex 2 Disc { center 0 0 0 normal 0 1 0 radius 0.5 }",
     ] {
@@ -61,8 +61,8 @@ fn floors_below_glass_are_not_lost() {
     let plane = "MaterialIndex 3 Plane { normal 0 1 0 offset 0 }";
     for glass in [
         "Box { min -0.5 0 -0.5 max 0.5 1 0.5 }",
-        "Transform { Rotate 0 1 0 30 Box { min -0.5 0 -0.5 max 0.5 1 0.5 } }",
-        "Transform { Translate 0 0.7 0 Rotate 1 0 0 90 Box { min -0.5 -0.5 -0.7 max 0.5 0.5 0.7 } }",
+        "Transform { Rotate { 0 1 0 30 } Box { min -0.5 0 -0.5 max 0.5 1 0.5 } }",
+        "Transform { Translate 0 0.7 0 Rotate { 1 0 0 90 } Box { min -0.5 -0.5 -0.7 max 0.5 0.5 0.7 } }",
         "Cylinder { base 0 0 0 top 0 0.3 0 radius 0.5 }",
     ] {
         let glass = format!("MaterialIndex 4 {glass}");
