@@ -258,8 +258,14 @@ impl Reader<'_> {
             },
             "Include" | "Import" => self.include(name, name_at, word == "Import"),
             "ObjectBegin" => self.object_begin(name, at),
-            "ObjectInstance" => self.instance(&name, name_at),
-            "NamedMaterial" => self.named_material(&name, name_at),
+            "ObjectInstance" => {
+                self.used_materials.extend(self.state.material_at.map(|at| (at.file, at.start)));
+                self.instance(&name, name_at);
+            }
+            "NamedMaterial" => {
+                self.state.material_at = Some(at.join(name_at));
+                self.named_material(&name, name_at);
+            }
             "MediumInterface" => {
                 let second = matches!(self.text().peek(report).map(|next| &next.token), Some(Token::Text(_)));
                 let outside = if second { self.name(at)?.0 } else { name.clone() };
@@ -310,7 +316,10 @@ impl Reader<'_> {
             "Sampler" => self.sampler(&keep(self, list)),
             "LightSource" => self.light(&name, at, list),
             "AreaLightSource" => self.area_light(&name, at, list),
-            "Material" => self.state.material = self.material(&name, at, list),
+            "Material" => {
+                self.state.material_at = Some(at);
+                self.state.material = self.material(&name, at, list);
+            }
             "MakeNamedMaterial" => self.make_named_material(name, at, list),
             "MakeNamedMedium" => self.make_named_medium(name, at, list),
             "Shape" => self.shape(&name, at, list),
@@ -390,6 +399,7 @@ impl Reader<'_> {
         let Some((_, state, _)) = self.stack.pop() else { return };
         if scope != Scope::Transform {
             self.check_area_light(state.area_light.as_ref(), Some((end, at)));
+            self.check_material(&state, (end, at));
         }
         match scope {
             Scope::Transform => self.state.transforms = state.transforms,
