@@ -170,8 +170,9 @@ fn every_cause_has_a_scene() {
 }
 
 /// Codes that no scene can trigger, or that commands other than `check` report.
-const WITHOUT: [(&str, &str); 6] = [
+const WITHOUT: [(&str, &str); 7] = [
     ("bad-place", "the readers of models report it"),
+    ("metal-default", "only glTF files can have it"),
     ("not-finite", "values that give NaN have their own findings"),
     ("all-missed", "another finding explains every known case"),
     ("one-color", "another finding explains every known case"),

@@ -250,7 +250,10 @@ const CASES: &[Case] = &[
         GLTF,
         &[
             ("\"name\":\"Poster\",", "\"name\":\"Poster\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.9,"),
-            ("\"baseColorTexture\":{\"index\":0}", "\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.8]"),
+            (
+                "\"baseColorTexture\":{\"index\":0}",
+                "\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.8]",
+            ),
         ],
         "ALPHA_CUTOFF",
     ),
@@ -259,7 +262,7 @@ const CASES: &[Case] = &[
         "gltf",
         GLTF,
         &[
-            ("[0.5,0.5,0.5,1],\"metallicFactor\":0", "[0.5,0.5,0.5,1],\"roughnessFactor\":0.3"),
+            ("[0.5,0.5,0.5,1],\"metallicFactor\":0", "[0.5,0.5,0.5,1],\"roughnessFactor\":0.1"),
             ("\"name\":\"Sun\",", "\"name\":\"Sun\",\"rotation\":[-0.3,0.3,0.09,0.9],"),
         ],
         "metal-default",
@@ -288,6 +291,8 @@ const CASES: &[Case] = &[
         &[
             ("def Mesh \"Ground\"\n{", "def Mesh \"Ground\"\n{\n    uniform token purpose = \"guide\""),
             ("def Sphere \"Ball\"\n{", "def Sphere \"Ball\"\n{\n    uniform token purpose = \"guide\""),
+            // The surface of a light would be visible.
+            ("def SphereLight \"Bulb\"", "def DistantLight \"Sun\""),
         ],
         "no-objects",
     ),
@@ -303,7 +308,12 @@ const CASES: &[Case] = &[
         "upside-down",
     ),
     // The sun has no rotation, so it shines along the floor.
-    ("usda", USD, &[("def SphereLight \"Bulb\"", "def DistantLight \"Sun\"")], "light-behind"),
+    (
+        "usda",
+        USD,
+        &[("def SphereLight \"Bulb\"", "def DistantLight \"Sun\""), ("intensity = 40", "intensity = 50000")],
+        "light-behind",
+    ),
     ("stl", STL, &[], ""),
     ("obj", STL, &[], "bad-file"),
     (

@@ -197,8 +197,8 @@ impl Reader<'_> {
                 Some(map) => self.state.transforms.apply(map),
                 None => report.error(at, "the axis of a rotation must not be 0 0 0"),
             },
-            "LookAt" => match look_at(self.numbers(at)?) {
-                Some(map) => {
+            "LookAt" => match self.numbers::<9>(at).map(|numbers| (look_at(numbers), numbers))? {
+                (Some(map), _) => {
                     if let Some(camera) = self.camera.as_ref().filter(|_| !self.in_world) {
                         let warning = Diagnostic::warning("`LookAt` after `Camera` does not move the camera");
                         let warning = warning.code("bad-place").at(at).related(camera.at, "the camera");
@@ -206,10 +206,12 @@ impl Reader<'_> {
                     }
                     self.state.transforms.apply(map);
                 }
-                None => report.error(
+                (None, [x, y, z, to_x, to_y, to_z, ..]) => report.error(
                     at,
-                    "the eye and the target of `LookAt` must differ, and `up` must not be parallel to the viewing \
-                     direction",
+                    match [x, y, z] == [to_x, to_y, to_z] {
+                        true => "the eye and the target of `LookAt` are equal",
+                        false => "the `up` of `LookAt` is parallel to the viewing direction, or has no length",
+                    },
                 ),
             },
             "Transform" | "ConcatTransform" => {

@@ -193,8 +193,8 @@ impl Reader<'_> {
         });
     }
 
-    /// Warns about a material that no shape of its scope follows, but that a shape precedes. `outer`
-    /// is the state of the enclosing scope, and `end` the directive that closes the scope.
+    /// Warns about a material that no shape of its scope follows, but that a shape precedes.
+    /// `outer` is the state of the enclosing scope, and `end` the directive that closes the scope.
     pub fn check_material(&self, outer: &State, (end, closed): (&str, Span)) {
         let place = |at: Option<Span>| at.map(|at| (at.file, at.start));
         let (own, before) = (self.state.material_at, self.state.shapes > outer.shapes);

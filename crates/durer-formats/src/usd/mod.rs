@@ -33,7 +33,7 @@ use super::growth::ResourceLimits;
 use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::too_large;
-use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Background, Group, Scene};
 use files::LayerFiles;

@@ -91,8 +91,12 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
             true => format!("the {a} is inside the {b}{more}"),
             false => format!("the {a} is hidden by the {b}{more}"),
         };
-        let plane = plane(&scene_probe.world().objects()[by as usize]).is_some();
+        let offset = plane(&scene_probe.world().objects()[by as usize]).map(|plane| plane.offset);
+        let plane = offset.is_some();
         let help = match (plane, inside) {
+            (true, _) if offset == Some(0.0) => {
+                "the object is behind the plane, which passes through the origin: move the object or the plane"
+            }
             (true, _) => "check the sign of `offset`: the object is behind the plane, which is at p · normal = offset",
             (false, true) => "move the object outside, or move or shrink the other object",
             (false, false) => "move the object to the other side, or move the object that hides it",

@@ -153,7 +153,11 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
             (Some(_), false) => "turn the light, or move the occluder",
             (Some(_), true) => "move the light or the occluder",
         };
-        Some(diagnostic.related(scene_probe.object_span(object), "the occluder").help(help))
+        let diagnostic = diagnostic.related(scene_probe.object_span(object), "the occluder").help(help);
+        // A camera in water or glass shows it on purpose, although its surface casts a shadow.
+        let eye = scene_probe.world().camera().pose().center;
+        let is_water = scene_probe.is_glass(object) && containing_objects(scene_probe.world(), eye).contains(&object);
+        Some(if is_water { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic })
     })
 }
 

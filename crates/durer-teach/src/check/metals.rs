@@ -3,13 +3,15 @@
 use super::finding::{Finding, MAX_FINDINGS};
 use super::layers::layers;
 use super::scene_probe::SceneProbe;
-use durer_diag::Diagnostic;
+use durer_diag::{Diagnostic, Severity};
 use durer_scene::math::Color;
 
 /// Brightness below which the surface of a metal looks black, and fraction of such samples above
 /// which a metal is reported.
 const DARK: f32 = 0.03;
 const MIN_DARK: f32 = 0.6;
+/// Ratio of the smallest to the largest channel of a colour below which it is that of a paint.
+const MAX_METAL_CHANNEL: f32 = 0.2;
 /// Minimum number of samples for a conclusion.
 const MIN_SAMPLES: usize = 6;
 
@@ -33,14 +35,21 @@ pub(super) fn metal_by_default(scene_probe: &SceneProbe) -> Vec<Finding> {
             .filter(|(probe, _)| probe.hit.as_ref().is_some_and(|hit| hit.material as usize == number));
         let (all, dark) =
             own.fold((0, 0), |(all, dark), (_, color)| (all + 1, dark + usize::from(color.max_element() < DARK)));
-        if all < MIN_SAMPLES || (dark as f32) < MIN_DARK * all as f32 {
+        let is_dark = dark as f32 >= MIN_DARK * all as f32;
+        // No metal has a colour as pure as that of paint, but anodised metal can have it.
+        let is_paint = m.base_color.min_element() < MAX_METAL_CHANNEL * m.base_color.max_element();
+        if all < MIN_SAMPLES || !is_dark && !is_paint {
             continue;
         }
         let message = format!("material {number} is a metal, because its file states no `metallicFactor`");
-        let diagnostic = Diagnostic::warning(message)
+        let severity = if is_dark { Severity::Warning } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(material.span)
-            .effect("a metal reflects only its surroundings, which are black here, so the objects are nearly black")
-            .help("write `\"metallicFactor\": 0`: the factor is 1 by default");
+            .effect(match is_dark {
+                true => "a metal shows only its surroundings, which are black here, so the objects are nearly black",
+                false => "a metal shows only its surroundings, most of which are black here, so the objects are dark",
+            })
+            .help("for another material, write `\"metallicFactor\": 0`: the factor is 1 by default");
         findings.push(Finding::from(diagnostic));
     }
     findings

@@ -163,6 +163,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("too-small", &["tiny", "pattern-scale", "light-behind", "light-cancelled"]),
     ("tiny", &["unseen"]),
     ("epsilon", &["tiny"]),
+    ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", &["normal-map", "no-coordinates", "flat-texture"]),
     ("no-emitter", &["flat-texture", "too-dark", "one-color"]),
     ("not-there", &["black-material", "no-coordinates", "flat-texture", "normal-map"]),
     ("thick-fog", &["black-fog"]),

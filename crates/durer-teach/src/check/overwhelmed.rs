@@ -10,13 +10,16 @@ use durer_scene::light::{Illuminate as _, Light, PHOTOMETRIC_FIELDS};
 const FEW_LIGHTS: usize = 2;
 /// Brightness of a white surface in a light below which the light is invisible, and fraction of the
 /// picture's brightness that it must not reach.
-const INVISIBLE: f32 = 0.04;
-const MAX_SHARE: f32 = 0.1;
+const INVISIBLE: f32 = 0.06;
+const MAX_SHARE: f32 = 0.15;
 /// Exposure below which light is in cd/m^2, and the daylight outshines all lights.
 const MIN_EXPOSURE: f32 = 0.1;
 /// Distance of a light, as a multiple of the scene's size, above which its position is probably in
 /// another unit.
-const FAR: f32 = 20.0;
+const FAR: f32 = 50.0;
+/// Focal length of a luminaire, as a multiple of the scene's size, above which it is probably in
+/// millimetres.
+const MAX_FOCAL_LENGTH: f32 = 10.0;
 
 /// Reports lights with a position whose light is invisible beside that of the background.
 pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
@@ -40,11 +43,11 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         let span = span(scene_probe, number_of_light)?;
         let diagnostic = Diagnostic::warning(format!(
-            "this light adds at most {} to the brightness of a white surface, which the other light makes {} bright",
+            "this light adds at most {} to the brightness of a white surface, which other light makes {} bright",
             number(most),
             number(middle)
         ))
-        .effect("the light is invisible in the picture");
+        .effect("the light is hardly visible in the picture");
         if let Some(diagnostic) = too_far(scene_probe, number_of_light, &diagnostic) {
             return Some(Finding::from(diagnostic));
         }
@@ -79,7 +82,7 @@ pub(super) fn too_far(scene_probe: &SceneProbe, light: usize, diagnostic: &Diagn
     }
     let (size, away) = (bounds.size().max_element(), (place - bounds.center()).length());
     if let Light::Photometric(lamp) = &own.value
-        && lamp.focal_length > FAR * size.max(away)
+        && lamp.focal_length > MAX_FOCAL_LENGTH * size.max(away)
     {
         let length = number(lamp.focal_length);
         let message =
@@ -91,7 +94,9 @@ pub(super) fn too_far(scene_probe: &SceneProbe, light: usize, diagnostic: &Diagn
         let diagnostic = Diagnostic { message, ..diagnostic.clone() };
         return Some(scene_probe.at_value(diagnostic.help(help), own.span, &["focalLength"]));
     }
-    if away < FAR * size {
+    // Without the inverse square, the distance may be intended.
+    let fades = scene_probe.world().lights()[light].inverse_square().is_some();
+    if away < FAR * size || !fades {
         return None;
     }
     let message = format!("this light is {} away from the objects, which are {} wide", number(away), number(size));

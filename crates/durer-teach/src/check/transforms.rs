@@ -1,5 +1,5 @@
-//! Checks for transforms in the wrong order: those that move objects out of the picture, scales that
-//! also scale a translation, and rotations whose angle comes first.
+//! Checks for transforms in the wrong order: those that move objects out of the picture, scales
+//! that also scale a translation, and rotations whose angle comes first.
 
 use super::finding::{Finding, MAX_FINDINGS, number, vector};
 use super::lines::is_same_span;

@@ -53,8 +53,9 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         let backs = scene_probe.hits().filter(|(_, hit)| hit.object == object && hit.from_behind).count();
         let walls = !physical && !scene_probe.input.job.settings.shade_back && backs * 50 > rays;
         let wrong = super::extent::encloses_camera_wrongly(scene_probe, object);
-        // The scene is visible through clear glass.
-        if scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0 && !dark && !walls && !wrong {
+        // The scene is visible through clear glass, and objects under water get no direct light.
+        let is_clear = scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0;
+        if is_clear && !walls && !wrong && (!dark || contains_objects(scene_probe, object)) {
             continue;
         }
         let swallowed = wrong || is_alone(scene_probe, object);
@@ -92,6 +93,14 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
     }
     findings
+}
+
+/// Returns true if the centre of another bounded object is inside an object.
+fn contains_objects(scene_probe: &SceneProbe, outer: u32) -> bool {
+    let objects = scene_probe.world().objects();
+    let others = objects.iter().enumerate().filter(|(number, _)| *number as u32 != outer);
+    let mut centers = others.filter_map(|(_, object)| Some(object.bounds()?.center()));
+    centers.any(|center| objects[outer as usize].contains(center))
 }
 
 /// Returns true if the picture of paths is dark and shows no bounded object except an opaque object
