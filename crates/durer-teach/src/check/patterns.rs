@@ -4,6 +4,7 @@
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::probes::Probe;
 use super::scene_probe::SceneProbe;
+use super::shapes::is_black;
 use durer_diag::Diagnostic;
 use durer_render::world::{Material, World};
 use durer_scene::material::{ColorNoise, PatternMaterial};
@@ -140,7 +141,7 @@ fn why_uniform(
 ) -> Option<(String, &'static str)> {
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
     if let (PatternMaterial::Mix(_), Some(texture)) = (solid, share_texture)
-        && super::textures::is_black(texture)
+        && is_black(texture)
     {
         let message = "the `shareTexture` of this mix is black everywhere: only its second material is visible";
         return Some((message.into(), "use a picture that is white where the first material should be visible"));

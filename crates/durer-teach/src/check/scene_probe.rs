@@ -4,6 +4,7 @@ use super::aim::{BeamMiss, beam_miss};
 use super::brightness::{brightest, exposed_colors};
 use super::mesh_files::{MeshFile, files, models};
 use super::probes::{CheckInput, Probe, ProbeGrid};
+use super::shapes::is_black;
 use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
 use durer_render::world::Material;
@@ -125,7 +126,7 @@ impl<'a> SceneProbe<'a> {
             let map = phong.principled.as_ref().and_then(|own| own.maps.emission);
             let texture = map.and_then(|map| world.textures().get(map as usize));
             match &phong.emission {
-                Some(emission) if !texture.is_some_and(super::textures::is_black) => emission.radiance,
+                Some(emission) if !texture.is_some_and(is_black) => emission.radiance,
                 _ => Color::ZERO,
             }
         };

@@ -129,6 +129,7 @@ checks! {
     "flat-texture": "a texture that shows only one colour or value", textures::flat_texture;
     "fine-texture": "a texture whose repetitions are smaller than a pixel", fine_textures::fine_texture;
     "normal-map": "a normal map that contains heights or colours", textures::normal_maps;
+    "high-bumps": "a bump map as high as its object is wide", textures::high_bumps;
     // Shapes and meshes.
     "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
     "turned-triangle": "triangles that face the opposite way from their neighbours", facing::turned_triangles;

@@ -3,8 +3,9 @@
 
 use super::colors::phongs;
 use super::finding::{Finding, MAX_FINDINGS, number as number_word};
-use super::layers::layers;
+use super::layers::{Layered, layers};
 use super::scene_probe::SceneProbe;
+use super::shapes::is_black;
 use durer_diag::Diagnostic;
 use durer_render::world::{Geometry, Material, Object, Principled};
 use durer_scene::dialect::Quirk;
@@ -23,11 +24,6 @@ const MAX_INWARDS: f32 = 0.2;
 /// Returns true if a mapping gives all points the same texture coordinates.
 fn is_constant(mapping: &Mapping) -> bool {
     mapping.transform.iter().all(|row| row[..2] == [0.0, 0.0])
-}
-
-/// Returns true if all texels of a texture are black.
-pub(super) fn is_black(texture: &Texture) -> bool {
-    texture.all_texels(|texel| texel == [0.0; 3])
 }
 
 /// Returns the textures of a layered material, each with the field that names it.
@@ -180,6 +176,40 @@ fn inwards(texture: &Texture) -> Option<f32> {
         true
     });
     (all.get() > 0).then(|| wrong.get() as f32 / all.get() as f32)
+}
+
+/// Height of a bump map, as a fraction of the largest side of its object, above which it is
+/// probably in another unit.
+const MAX_BUMP: f32 = 0.2;
+
+/// Reports bump maps whose heights are comparable to the sizes of their objects.
+pub(super) fn high_bumps(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let objects = scene_probe.world().objects();
+    let say = |(number, material, m): Layered| {
+        m.bump_texture.as_ref().filter(|_| scene_probe.material_rays()[number] > 0)?;
+        let own = objects.iter().filter(|object| object.material as usize == number);
+        let sizes: Option<Vec<f32>> = own.map(|object| Some(object.bounds()?.size().max_element())).collect();
+        let size = sizes?.into_iter().fold(0.0, f32::max);
+        let height = number_word(m.bump_height);
+        if m.bump_height.abs() <= MAX_BUMP * size {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!(
+            "the bumps of material {number} are {height} high, on objects {} wide",
+            number_word(size)
+        ))
+        .effect("surfaces are shaded as if they were steep everywhere, in dark and bright spots")
+        .help(format!(
+            "`bumpHeight` is the difference in height between black and white, in units of the scene: try \
+                     `bumpHeight {}`",
+            number_word(0.005 * size)
+        ));
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["bumpHeight", "bumpTexture"])))
+    };
+    if scene_probe.model_format().is_some() || !scene_probe.is_physical() {
+        return Vec::new();
+    }
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
 /// Returns true if a mesh has a second set of texture coordinates.
