@@ -99,6 +99,15 @@ fn put_files(folder: &TestFolder) {
     folder.write("black.ppm", "P3\n2 1\n255\n0 0 0 0 0 0\n");
     folder.write("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
     folder.write("blue.ppm", "P3\n2 1\n255\n0 0 220 0 0 40\n");
+    folder.write("normals.ppm", "P3\n2 1\n255\n128 128 255 140 120 250\n");
+    // Red, green, blue and opacity.
+    let pam = |texels: &[u8; 8]| {
+        let head = "P7\nWIDTH 2\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n";
+        [head.as_bytes(), texels].concat()
+    };
+    folder.write("clear.pam", pam(&[99, 99, 99, 0, 200, 20, 20, 0]));
+    folder.write("leaf.pam", pam(&[60, 130, 40, 0, 60, 130, 40, 255]));
+    folder.write("down.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 30\n0 45 90\n0\n1300 900 0\n");
     let relief: Vec<String> = (0..64).map(|i| format!("{0} {0} {0}", (i * 37) % 200)).collect();
     folder.write("relief.ppm", format!("P3\n8 8\n255\n{}\n", relief.join("\n")));
     folder.write(
@@ -161,8 +170,9 @@ fn every_cause_has_a_scene() {
 }
 
 /// Codes that no scene can trigger, or that commands other than `check` report.
-const WITHOUT: [(&str, &str); 6] = [
+const WITHOUT: [(&str, &str); 7] = [
     ("bad-place", "the readers of models report it"),
+    ("metal-default", "only glTF files can have it"),
     ("not-finite", "values that give NaN have their own findings"),
     ("all-missed", "another finding explains every known case"),
     ("one-color", "another finding explains every known case"),

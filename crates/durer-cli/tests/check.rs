@@ -330,3 +330,92 @@ fn bright_stars_in_a_dark_picture_are_sound() {
     let output = folder.run("check stars.txt --integrator path").out;
     assert!(!output.contains("warning"), "{output}");
 }
+
+/// A scene with a box, a floor and a small change.
+fn with_change(change: impl Fn(&str) -> String) -> String {
+    change(
+        "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 1 0 angle 35 }
+Lights { DirectionalLight { direction -1 -2 -1 color 0.8 0.8 0.8 } }
+Background { color 0.2 0.3 0.4 ambientLight 0.2 0.2 0.2 }
+Materials { PhongMaterial paint { diffuseColor 0.8 0.3 0.2 } PhongMaterial floor { diffuseColor 0.5 0.5 0.5 } }
+Group { MaterialIndex paint Sphere { center -1.2 1 0 radius 1 }
+Box { min 0.4 0 -0.6 max 1.8 1.4 0.8 }
+MaterialIndex floor Plane { normal 0 1 0 offset 0 } }
+",
+    )
+}
+
+/// Objects outside the picture are said to be behind the camera or beside the view, and the
+/// transform that moves them there is named. Objects in a mirror are visible.
+#[test]
+fn places_outside_the_picture_are_described() {
+    let folder = TestFolder::new();
+    let said = |old: &str, new: &str| {
+        folder.write("a.txt", with_change(|text| text.replacen(old, new, 1)));
+        folder.run("check a.txt").out
+    };
+    let box_text = "Box { min 0.4 0 -0.6 max 1.8 1.4 0.8 }";
+    let behind = said(box_text, "Transform { Translate 1 0 0 Translate 0 0 30 Box { min -1 0 -1 max 1 2 1 } }");
+    assert!(behind.contains("21.05 away, behind the camera"), "{behind}");
+    assert!(behind.contains("without the translation by 0 0 30, it would be at 1 1 0"), "{behind}");
+    assert!(!behind.contains("the camera looks elsewhere"), "{behind}");
+    let right = said(box_text, "Box { min 20 0 -1 max 22 2 1 }");
+    assert!(right.contains("to the right of the view"), "{right}");
+    // The ball behind the camera is seen in a mirror.
+    let mirror = "Box { min -3 0 -4 max 3 5 -3.9 } MaterialIndex paint Sphere { center 0 1.5 14 radius 1 }";
+    let mirrored = with_change(|text| {
+        let text = text.replacen(box_text, &format!("MaterialIndex glass {mirror}"), 1);
+        let glass = "Materials { PhongMaterial glass { diffuseColor 0.1 0.1 0.1 reflectiveColor 0.8 0.8 0.8 }";
+        text.replacen("Materials {", glass, 1)
+    });
+    folder.write("a.txt", mirrored);
+    let mirrored = folder.run("check a.txt").out;
+    assert!(!mirrored.contains("unseen"), "{mirrored}");
+    // A wall seen edge-on is not hidden.
+    let edge = "Rectangle { corner -3 0 -2 edge0 6 0 0 edge1 0 2 0 }";
+    folder.write(
+        "a.txt",
+        with_change(|text| {
+            let above = "OrthographicCamera { center 0 9 0 direction 0 -1 0 up 0 0 -1 size 8 }";
+            let camera = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 1 0 angle 35 }";
+            text.replacen(camera, above, 1).replacen(box_text, edge, 1)
+        }),
+    );
+    let above = folder.run("check a.txt").out;
+    assert!(!above.contains("is hidden by"), "{above}");
+}
+
+/// Values that come from options are not blamed on the file.
+#[test]
+fn values_of_options_are_not_blamed_on_the_file() {
+    let folder = TestFolder::new();
+    folder.write("a.txt", with_change(str::to_string));
+    let inside = folder.run("check a.txt --eye -1.2,1,0.5").out;
+    assert!(inside.contains("[camera-inside]") && inside.contains("this value comes from `--eye`"), "{inside}");
+    assert!(inside.contains("`--eye ") && !inside.contains("`center "), "{inside}");
+    assert!(!inside.contains("a.txt:1:28"), "{inside}");
+    folder.write("a.txt", with_change(|text| text.replacen("center 0 2 9", "center -1.2 1 0.5", 1)));
+    let inside = folder.run("check a.txt").out;
+    assert!(inside.contains("a.txt:1:28") && inside.contains("`center "), "{inside}");
+}
+
+/// Materials are called by their names, and one mistake causes one error.
+#[test]
+fn names_of_materials_are_used() {
+    let folder = TestFolder::new();
+    folder.write("a.txt", with_change(|text| text.replacen("MaterialIndex paint", "MaterialIndex floor", 1)));
+    let unused = folder.run("check a.txt").out;
+    assert!(unused.contains("no object uses material `paint`"), "{unused}");
+    let late = with_change(|text| text.replacen("Box {", "use post Box {", 1))
+        + "define post Cylinder { base 0 0 0 top 0 1 0 radius 1 }\n";
+    folder.write("b.txt", late);
+    let late = folder.run("check b.txt").out;
+    assert!(late.contains("nothing is defined as `post`") && late.contains("b.txt: 1 error"), "{late}");
+    let rough = "PrincipledMaterial paint { baseColor 0.8 0.3 0.2 roughness 0.4 }";
+    folder.write(
+        "c.txt",
+        with_change(|text| text.replacen("PhongMaterial paint { diffuseColor 0.8 0.3 0.2 }", rough, 1)),
+    );
+    let rough = folder.run("check c.txt").out;
+    assert!(rough.contains("did you mean `specularRoughness`?"), "{rough}");
+}

@@ -154,6 +154,17 @@ const CASES: &[Case] = &[
     ),
     // The light ends before its shape, and no shape follows it at all.
     ("pbrt", PBRT, &[("\"rgb L\" [ 9 9 8 ]\n", "\"rgb L\" [ 9 9 8 ]\nAttributeEnd\nAttributeBegin\n")], "bad-place"),
+    // The material comes after its shape.
+    (
+        "pbrt",
+        PBRT,
+        &[
+            ("    Material \"coateddiffuse\" \"rgb reflectance\" [ 0.1 0.3 0.7 ] \"float roughness\" 0.1\n", ""),
+            ("\"float radius\" 1\n", "\"float radius\" 1\n    Material \"coateddiffuse\"\n"),
+        ],
+        "bad-place",
+    ),
+    ("pbrt", PBRT, &[("WorldBegin\n", "WorldBegin\nScale 1000 1000 1000\n")], "camera-inside"),
     // The eye and the target are exchanged.
     (
         "pbrt",
@@ -195,6 +206,17 @@ const CASES: &[Case] = &[
         "clipped",
     ),
     ("xml", MITSUBA, &[("value=\"0.5,0.5,0.48\"", "value=\"128, 128, 122\"")], "color-range"),
+    // The light is below the floor and faces down.
+    (
+        "xml",
+        MITSUBA,
+        &[(
+            "<rotate x=\"1\" angle=\"90\"/><translate x=\"1\" y=\"5\" z=\"2\"/>",
+            "<translate x=\"1\" y=\"5\" z=\"2\"/><rotate x=\"1\" angle=\"90\"/>",
+        )],
+        "lamp-blocked",
+    ),
+    ("xml", MITSUBA, &[("value=\"7,7,6\"", "value=\"0.007,0.007,0.006\"")], "too-dark"),
     ("rad", RADIANCE, &[], ""),
     (
         "rad",
@@ -223,6 +245,37 @@ const CASES: &[Case] = &[
         &[("\"name\":\"Poster\",", "\"name\":\"Poster\",\"alphaMode\":\"MASK\",\"alphaCutoff\":9,")],
         "ALPHA_CUTOFF",
     ),
+    (
+        "gltf",
+        GLTF,
+        &[
+            ("\"name\":\"Poster\",", "\"name\":\"Poster\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.9,"),
+            (
+                "\"baseColorTexture\":{\"index\":0}",
+                "\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.8]",
+            ),
+        ],
+        "ALPHA_CUTOFF",
+    ),
+    // The wall is a metal, which the sun does not light towards the camera.
+    (
+        "gltf",
+        GLTF,
+        &[
+            ("[0.5,0.5,0.5,1],\"metallicFactor\":0", "[0.5,0.5,0.5,1],\"roughnessFactor\":0.1"),
+            ("\"name\":\"Sun\",", "\"name\":\"Sun\",\"rotation\":[-0.3,0.3,0.09,0.9],"),
+        ],
+        "metal-default",
+    ),
+    (
+        "gltf",
+        GLTF,
+        &[
+            ("[0.5,0.5,0.5,1],\"metallicFactor\":0", "[0.5,0.5,0.5,1],\"metallicFactor\":0.2"),
+            ("\"name\":\"Sun\",", "\"name\":\"Sun\",\"rotation\":[-0.3,0.3,0.09,0.9],"),
+        ],
+        "",
+    ),
     ("usda", USD, &[], ""),
     (
         "usda",
@@ -231,6 +284,36 @@ const CASES: &[Case] = &[
         "missing-field",
     ),
     ("usda", USD, &[("(0, 0.7, 0)", "(0, 0.7, 0")], "syntax"),
+    ("usda", USD, &[("upAxis = \"Y\"\n)", "upAxis = \"Y\"\n")], "syntax"),
+    (
+        "usda",
+        USD,
+        &[
+            ("def Mesh \"Ground\"\n{", "def Mesh \"Ground\"\n{\n    uniform token purpose = \"guide\""),
+            ("def Sphere \"Ball\"\n{", "def Sphere \"Ball\"\n{\n    uniform token purpose = \"guide\""),
+            // The surface of a light would be visible.
+            ("def SphereLight \"Bulb\"", "def DistantLight \"Sun\""),
+        ],
+        "no-objects",
+    ),
+    // The camera is upside down above a floor that is a mesh.
+    (
+        "usda",
+        USD,
+        &[(
+            "(0, 1.2, 7)\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]",
+            "(0, 1.2, 7)\n    float xformOp:rotateZ = 180\n    uniform token[] xformOpOrder = \
+             [\"xformOp:translate\", \"xformOp:rotateZ\"]",
+        )],
+        "upside-down",
+    ),
+    // The sun has no rotation, so it shines along the floor.
+    (
+        "usda",
+        USD,
+        &[("def SphereLight \"Bulb\"", "def DistantLight \"Sun\""), ("intensity = 40", "intensity = 50000")],
+        "light-behind",
+    ),
     ("stl", STL, &[], ""),
     ("obj", STL, &[], "bad-file"),
     (
@@ -239,7 +322,13 @@ const CASES: &[Case] = &[
         &[("1 0 0\nvertex 0 1 0", "0 0 0\nvertex 0 1 0"), ("vertex 1 1 0", "vertex 1 0 0")],
         "degenerate-mesh",
     ),
+    ("stl", OBJ, &[], "bad-file"),
     ("ply", PLY, &[], ""),
+    ("ply", PLY, &[("element vertex 4", "element vertex 3")], "bad-file"),
+    ("ply", PLY, &[("format ascii", "format binary_little_endian")], "bad-file"),
+    ("off", OFF, &[], ""),
+    ("off", OFF, &[("OFF\n5 6", "OFF\n6 5")], "bad-file"),
+    ("off", OFF, &[("3 0 1 4", "4 0 1 4")], "bad-file"),
     // A point cloud is shown as small balls.
     ("ply", CLOUD, &[], ""),
     (
@@ -277,6 +366,21 @@ end_header
 3 0 1 3
 3 0 3 2
 3 1 2 3
+";
+
+const OFF: &str = "OFF
+5 6 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0.5 0.5 1
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+3 0 3 2
+3 0 2 1
 ";
 
 const CLOUD: &str = "ply
@@ -366,6 +470,31 @@ fn places_and_words_are_those_of_the_file() {
     let light = said("d.pbrt", PBRT, "[ 9 9 8 ]\n", "[ 9 9 8 ]\nAttributeEnd\nAttributeBegin\n");
     assert!(light.contains("this `AreaLightSource` has no shape") && light.contains("d.pbrt:8:22"), "{light}");
     assert!(!light.contains("no-emitter"), "{light}");
+    let dim = said("f.xml", MITSUBA, "7,7,6", "0.007,0.007,0.006");
+    assert!(dim.contains("f.xml:10:") && dim.contains("emits only 0.007 0.007 0.006"), "{dim}");
+    assert!(!dim.contains("one-color"), "{dim}");
+    let below = said(
+        "g.xml",
+        MITSUBA,
+        "<rotate x=\"1\" angle=\"90\"/><translate x=\"1\" y=\"5\" z=\"2\"/>",
+        "<translate x=\"1\" y=\"5\" z=\"2\"/><rotate x=\"1\" angle=\"90\"/>",
+    );
+    assert!(below.contains("its center is at 1 -2 5"), "{below}");
+    let scaled = said("h.pbrt", PBRT, "WorldBegin\n", "WorldBegin\nScale 1000 1000 1000\n");
+    assert!(scaled.contains("h.pbrt:7:1") && scaled.contains("scales all objects, but not the camera"), "{scaled}");
+    let parenthesis = said("i.usda", USD, "upAxis = \"Y\"\n)", "upAxis = \"Y\"\n");
+    assert!(parenthesis.contains("i.usda:2:1") && parenthesis.contains("before `def`"), "{parenthesis}");
+    let rows = said("j.ply", PLY, "element vertex 4", "element vertex 3");
+    assert!(rows.contains("one more row of 6 numbers follows") && rows.contains("`element vertex 4`"), "{rows}");
+    let text = said("k.ply", PLY, "format ascii", "format binary_little_endian");
+    assert!(text.contains("k.ply:2:1") && text.contains("write `format ascii 1.0`"), "{text}");
+    let late = said(
+        "l.pbrt",
+        PBRT,
+        "    Shape \"sphere\" \"float radius\" 1\n",
+        "    Shape \"sphere\" \"float radius\" 1\n    Material \"conductor\"\n",
+    );
+    assert!(late.contains("this material applies to no shape"), "{late}");
     let open = said("e.usda", USD, "(0, 0.7, 0)", "(0, 0.7, 0");
     assert!(open.contains("this `(` is not closed"), "{open}");
 }
@@ -463,4 +592,20 @@ fn views_beside_a_radiance_scene_are_offered() {
     let output = folder.expect_exit(0, "render room.rad -o a.png --size 40x30 --samples 4");
     assert!(output.err.contains(offered), "{}", output.err);
     assert!(!folder.run("check room.rad --view-file inside.vf").out.contains("--view-file inside.vf`"));
+}
+
+/// An illumination model alone does not make a coloured surface glass on purpose.
+#[test]
+fn glass_by_illumination_model_is_mentioned() {
+    let folder = TestFolder::new();
+    let said = |material: &str| {
+        folder.write("m.obj", format!("mtllib m.mtl\nusemtl paint\n{OBJ}"));
+        folder.write("m.mtl", format!("newmtl paint\nKd 0.6 0.2 0.2\n{material}\n"));
+        folder.run("check m.obj").out
+    };
+    let paint = said("illum 4");
+    assert!(paint.contains("note[illum-glass]") && paint.contains("m.mtl:3:1"), "{paint}");
+    for glass in ["illum 4\nTf 1 1 1", "illum 4\nd 0.1", "illum 6\nNi 1.5", "illum 2"] {
+        assert!(!said(glass).contains("illum-glass"), "{glass}");
+    }
 }

@@ -102,6 +102,19 @@ fn recognise(bytes: &[u8]) -> bool {
     Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
 }
 
+/// Returns true if a file that has another extension is certainly a Wavefront file: text whose
+/// first statement other than comments is a vertex with three coordinates or more.
+pub(super) fn is_certain(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 12)];
+    let is_comment = |line: &[u8]| matches!(line.first(), None | Some(b'#' | b'o' | b'g' | b'm'));
+    let lines = head.split(|byte| *byte == b'\n').map(|line| line.trim_ascii());
+    let first = lines.clone().find(|line| !is_comment(line)).and_then(|line| line.strip_prefix(b"v "));
+    let is_number = |word: &[u8]| super::number::parse_f32(word).is_ok();
+    let words = |line: &[u8]| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+    let numbers = |line: &[u8]| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).all(is_number);
+    !head.contains(&0) && first.is_some_and(|rest| words(rest) >= 3 && numbers(rest))
+}
+
 /// Reads a Wavefront file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_with(bytes, file, &mut StateChanges::default(), diagnostics)

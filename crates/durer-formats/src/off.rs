@@ -105,8 +105,9 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
     let mut report = Report::new(file, diagnostics);
     let before = report.count();
     let data = parse(bytes, &mut report);
-    if data.is_none() {
-        report_swapped_counts(bytes, &mut report, before);
+    // A file with swapped counts can be readable, but its first faces then count as vertices.
+    if !report_swapped_counts(bytes, &mut report, before) && data.is_none() {
+        report_short_face(bytes, &mut report, before);
     }
     let data = data.unwrap_or_default();
     if data.triangles.is_empty() && !report.has_errors() {
@@ -223,8 +224,8 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     Some(data)
 }
 
-/// Replaces the errors of a file whose header states the number of faces before that of vertices.
-fn report_swapped_counts(bytes: &[u8], report: &mut Report, before: usize) {
+/// Words of each line that is not blank, and the index of the line that has the counts.
+fn rows_of(bytes: &[u8]) -> Option<(Vec<Vec<Range<usize>>>, usize)> {
     let mut rows = Vec::new();
     let mut words = Words { bytes, at: 0 };
     while let Some(first) = words.next(false) {
@@ -237,23 +238,54 @@ fn report_swapped_counts(bytes: &[u8], report: &mut Report, before: usize) {
     let is_count = |word: &Range<usize>| bytes[word.clone()].iter().all(u8::is_ascii_digit);
     // The counts are in the first line, or in the second one after the word `OFF`.
     let is_header = |row: &Vec<Range<usize>>| row.len() == 3 && row.iter().all(is_count);
-    let Some(header) = rows.iter().take(2).position(is_header) else { return };
+    let header = rows.iter().take(2).position(is_header)?;
+    Some((rows, header))
+}
+
+/// Replaces the diagnostics of a file whose header states the number of faces before that of
+/// vertices. Returns false if the header does not.
+fn report_swapped_counts(bytes: &[u8], report: &mut Report, before: usize) -> bool {
+    let Some((rows, header)) = rows_of(bytes) else { return false };
     let [vertices, faces] = [0, 1].map(|i| std::str::from_utf8(&bytes[rows[header][i].clone()]).unwrap_or_default());
     let mut body = rows[header + 1..].iter().map(Vec::len);
     // A vertex has three coordinates, and a face has at least three indices after their number.
     let triples = body.by_ref().take_while(|words| *words == 3).count();
     let others = rows.len() - header - 1 - triples;
     if vertices == faces || faces != triples.to_string() || vertices != others.to_string() {
-        return;
+        return false;
     }
     let at = rows[header][0].start..rows[header][1].end;
     report.truncate(before);
-    report
-        .error(
-            at,
-            format!("the header states {vertices} vertices and {faces} faces, but there are {triples} and {others}"),
-        )
-        .help = Some(format!("the number of vertices comes first: write `{faces} {vertices}`"));
+    let message = format!(
+        "the header states {vertices} vertices and {faces} faces, but there are {triples} vertices and {others} faces"
+    );
+    let error = report.error(at, message);
+    (error.code, error.help) =
+        ("bad-file", Some(format!("the number of vertices comes first: write `{faces} {vertices}`")));
+    true
+}
+
+/// Replaces the errors of a file that has one face per line by an error at the first face whose
+/// line has fewer indices than the face announces.
+fn report_short_face(bytes: &[u8], report: &mut Report, before: usize) {
+    let Some((rows, header)) = rows_of(bytes) else { return };
+    let text = |word: &Range<usize>| std::str::from_utf8(&bytes[word.clone()]).unwrap_or_default();
+    let number = |word: &Range<usize>| text(word).parse::<usize>().ok();
+    let [Some(vertices), Some(faces)] = [0, 1].map(|i| number(&rows[header][i])) else { return };
+    let body = &rows[header + 1..];
+    // Without one line for each vertex and face, a face can continue on the next line.
+    if body.len() != vertices.saturating_add(faces) {
+        return;
+    }
+    let is_short = |row: &&Vec<Range<usize>>| number(&row[0]).is_some_and(|count| row.len() - 1 < count);
+    let Some(row) = body[vertices..].iter().find(is_short) else { return };
+    let indices: Vec<&str> = row[1..].iter().map(text).collect();
+    let message = format!("this face announces {} corners, but its line has {}", text(&row[0]), indices.len());
+    let at = row[0].start..row[row.len() - 1].end;
+    report.truncate(before);
+    let error = report.error(at, message);
+    let help = format!("add the missing index, or write `{} {}`", indices.len(), indices.join(" "));
+    (error.code, error.help) = ("bad-file", Some(help));
 }
 
 /// Returns a colour of three or four numbers, which are from 0 to 1, or from 0 to 255.
@@ -324,7 +356,15 @@ mod tests {
         assert!(message("OFF BINARY\n").contains("save") || message("OFF BINARY\n").contains("binary OFF"));
         assert!(message("OFF\n3 1 0\n0 0 0\n").ends_with("the file ends before a coordinate of a vertex"));
         let swapped = "OFF\n1 3 0\n0 0 0\n1 0 0\n-1 1 0\n3 0 1 2\n";
-        assert_eq!(message(swapped), "4 the header states 1 vertices and 3 faces, but there are 3 and 1");
+        let counts = "4 the header states 1 vertices and 3 faces, but there are 3 vertices and 1 faces";
+        assert_eq!(message(swapped), counts);
+        // The first faces are readable as vertices with a colour, so no error precedes this one.
+        let readable = "OFF\n4 2 0\n0 0 0\n1 0 0\n3 0 1 0\n3 1 0 1\n3 0 1 0\n3 0 0 1\n";
+        assert!(message(readable).starts_with("4 the header states 4 vertices and 2 faces"), "{}", message(readable));
+        let short = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n3 0 2 1\n";
+        assert_eq!(message(short), "28 this face announces 4 corners, but its line has 3");
+        // A face on two lines is complete.
+        assert_eq!(message("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0\n1 2\n"), "");
         let too_few = "OFF\n2 1 0\n0 0 0\n1 0 0\n-1 1 0\n3 0 1 2\n";
         assert!(!message(too_few).contains("the header states"), "{}", message(too_few));
         assert!(message("junk").contains("expected `OFF`, found `junk`"));

@@ -18,7 +18,7 @@ use durer_image::decode_srgb;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 use header::{Encoding, Header, read_header};
-use lines::report_wrong_row;
+use lines::{report_text_body, report_wrong_row};
 use order::report_wrong_order;
 use values::{AsciiValues, BinaryValues};
 use write::write;
@@ -60,7 +60,7 @@ fn is_point_cloud(bytes: &[u8]) -> bool {
 fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     let header = read_header(bytes, report)?;
     let (start, elements) = (header.body, &header.elements);
-    if report_wrong_order(bytes, &header, report) {
+    if report_wrong_order(bytes, &header, report) || report_text_body(bytes, &header, report) {
         return None;
     }
     let mesh = match header.encoding {

@@ -63,8 +63,10 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
     }
     let stl: (&[u8], &str, Option<&str>) = (b"solid", "STL", Some("stl"));
     let is_stl = super::stl::is_text(bytes);
+    let obj: (&[u8], &str, Option<&str>) = (b"v", "Wavefront OBJ", Some("obj"));
+    let is_obj = || extensions.contains(&"stl") && super::obj::is_certain(bytes);
     let signature = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start));
-    let (start, what, own) = signature.or(is_stl.then_some(&stl))?;
+    let (start, what, own) = signature.or(is_stl.then_some(&stl)).or_else(|| is_obj().then_some(&obj))?;
     // Packages of USD are ZIP archives too.
     let own_package = *own == Some("3mf") && extensions.contains(&"usdz");
     if own_package || own.is_some_and(|own| extensions.contains(&own)) {
@@ -140,5 +142,10 @@ mod tests {
         let stl = b"solid a\nfacet normal 0 0 1\n outer loop\n vertex 0 0 0\n";
         assert!(messages(stl, "b.obj", &["obj"]).unwrap().contains("rename the file to `b.stl`"));
         assert_eq!(messages(stl, "b.stl", &["stl"]), None);
+        let obj = b"# a triangle\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        assert!(messages(obj, "b.stl", &["stl"]).unwrap().contains("`b.stl` is Wavefront OBJ"));
+        assert!(messages(obj, "b.stl", &["stl"]).unwrap().contains("rename the file to `b.obj`"));
+        assert_eq!(messages(obj, "b.obj", &["obj"]), None);
+        assert_eq!(messages(b"v binary header of a program", "b.stl", &["stl"]), None);
     }
 }

@@ -61,6 +61,18 @@ pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     Some(first.join(values[numbers.max(1) - 1].span))
 }
 
+/// Returns the span of the name between the keyword of a block and its opening brace, if the block
+/// has a name.
+pub fn name(bytes: &[u8], keyword: Span) -> Option<Span> {
+    let rest = bytes.get(keyword.end as usize..)?;
+    let all = tokens(&rest[..rest.len().min(1 << 10)], keyword.file);
+    let mut words = all.into_iter().filter(|token| token.kind != TokenKind::Comment);
+    let (name, open) = (words.next()?, words.next()?);
+    let Span { file, start, end } = name.span;
+    let is_named = name.kind == TokenKind::Word && open.kind == TokenKind::Open;
+    is_named.then_some(Span { file, start: start + keyword.end, end: end + keyword.end })
+}
+
 /// Returns the span of a complete block, from the keyword to the closing brace.
 pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
     inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })

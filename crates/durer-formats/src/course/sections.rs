@@ -170,7 +170,8 @@ impl Reader<'_, '_> {
     /// belongs to that section.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
-        self.depth == 0 && !is_section(&word) && block_of(&word) == Some(name)
+        // A definition may stand between the sections.
+        self.depth == 0 && !is_section(&word) && word != "define" && block_of(&word) == Some(name)
     }
 
     fn lights(&mut self, keyword: Span) {

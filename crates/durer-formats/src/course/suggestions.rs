@@ -29,7 +29,7 @@ const COUNTERPARTS: [(&str, &str); 20] = [
 
 /// Common mistakes. Each entry has the wrong word, the words that may have been intended, and a
 /// remark. The first of the intended words that is valid in the block is suggested.
-const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
+const COMMON_MISTAKES: [(&str, &[&str], &str); 52] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
     ("mesh", &["TriangleMesh"], ""),
@@ -65,8 +65,32 @@ const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
     ("ambient", &["ambientLight", "ambient_light"], ""),
     ("reflection", &["reflectiveColor"], ""),
     ("refraction", &["indexOfRefraction", "refractionIndex"], ""),
-    ("ior", &["indexOfRefraction", "refractionIndex"], ""),
+    ("ior", &["indexOfRefraction", "refractionIndex", "specularIor"], ""),
     ("material", &["MaterialIndex"], ""),
+    // Parameters of other programs' materials.
+    ("roughness", &["specularRoughness"], "that is the roughness of the surface itself, below any coat"),
+    ("anisotropy", &["specularAnisotropy"], ""),
+    ("specular", &["specularWeight"], ""),
+    ("metallic", &["baseMetalness"], ""),
+    ("metalness", &["baseMetalness"], ""),
+    ("metal", &["baseMetalness"], ""),
+    ("albedo", &["baseColor", "diffuseColor"], ""),
+    ("diffuse", &["baseColor", "diffuseColor"], ""),
+    ("diffuseColor", &["baseColor"], ""),
+    ("transmission", &["transmissionWeight"], ""),
+    ("transparency", &["transmissionWeight", "transparentColor"], ""),
+    ("subsurface", &["subsurfaceWeight"], ""),
+    ("coat", &["coatWeight"], ""),
+    ("clearcoat", &["coatWeight"], ""),
+    ("clearcoatRoughness", &["coatRoughness"], ""),
+    ("sheen", &["fuzzWeight"], ""),
+    ("fuzz", &["fuzzWeight"], ""),
+    ("emission", &["emissionLuminance"], "`emissionColor` is its colour"),
+    ("emissive", &["emissionLuminance"], "`emissionColor` is its colour"),
+    ("normalMap", &["normalTexture"], ""),
+    ("bumpMap", &["bumpTexture"], ""),
+    ("indexOfRefraction", &["specularIor"], ""),
+    ("alpha", &["opacity"], ""),
 ];
 
 /// Returns the word in this dialect's grammar for a word of the other grammar.
@@ -117,6 +141,7 @@ pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
         }
         "position" if within("Camera") => "the position of a camera is its `center`",
         "position" => "the position of a sphere is its `center`",
+        "color" if within("PrincipledMaterial") => "the colour of this material is its `baseColor`",
         "color" if within("Material") => {
             "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)"
         }

@@ -216,7 +216,8 @@ pub(crate) fn flat_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
         MatrixOp::UniformScale(s) => s == 0.0,
         _ => false,
     };
-    let error = Diagnostic::error("a scale factor of 0 flattens space and has no inverse").code("flat-transform");
+    let error =
+        Diagnostic::error("a scale factor of 0 flattens space: the transform has no inverse").code("flat-transform");
     flat.then(|| error.help("use a factor of 1 along axes that keep their size"))
 }
 

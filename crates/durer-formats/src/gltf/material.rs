@@ -39,6 +39,13 @@ pub(super) fn needs_tangents(at: &JsonRef) -> bool {
     at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
 }
 
+/// Returns the cutoff of a material, or the material itself if it states none, and the alpha of the
+/// material's base colour, which is the largest that it can have.
+fn cut_away<'a>(at: &'a JsonRef<'a>) -> Option<(JsonRef<'a>, f32)> {
+    let factor = at.value.pointer("/pbrMetallicRoughness/baseColorFactor/3")?.as_f64()?;
+    Some((at.get("alphaCutoff").or_else(|| at.get("alphaMode"))?, factor as f32))
+}
+
 impl Model<'_> {
     /// Converts all materials.
     pub(super) fn materials(&self, root: &JsonRef) -> Vec<PrincipledMaterial> {
@@ -76,6 +83,14 @@ impl Model<'_> {
         let cutoff = at.get("alphaCutoff").and_then(|cutoff| cutoff.number_in(0.0..)).unwrap_or(0.5);
         if let Some(value) = at.get("alphaCutoff").filter(|_| cutoff > 1.0) {
             let message = "opacity goes from 0 to 1, so nothing of this material is visible with a cutoff above 1";
+            value.warning("ALPHA_CUTOFF", message);
+        }
+        if let Some((value, factor)) = cut_away(at).filter(|_| alpha == Alpha::Mask && cutoff <= 1.0)
+            && factor < cutoff
+        {
+            let message = format!(
+                "the cutoff {cutoff} is above {factor}, the largest alpha of this material, so nothing of it is visible"
+            );
             value.warning("ALPHA_CUTOFF", message);
         }
         let extensions = at.get("extensions");

@@ -134,7 +134,7 @@ fn errors_have_line_and_column() {
         (objects("{\"type\": \"Union\"}"), "2:1: `Union` has no `objects`"),
         (objects("{\"type\": \"TriangleMesh\", \"obj_file\": \"a b\"}"), "2:38: `obj_file` cannot be `a b`"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Scale\": [1, 0, 1]}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
-            "2:46: a scale factor of 0 flattens space and has no inverse"),
+            "2:46: a scale factor of 0 flattens space: the transform has no inverse"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Shear\": 1}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
             "2:37: unknown matrix `Shear`"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),

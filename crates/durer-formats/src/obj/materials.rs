@@ -124,7 +124,9 @@ impl Reader<'_, '_> {
                     _ => Word { text: String::new(), at: keyword.at },
                 };
                 let next = MtlMaterial { name: name.text, at: name.at, ..MtlMaterial::default() };
-                current.replace(next).into_iter().for_each(|finished| self.finish(finished));
+                if let Some(finished) = current.replace(next) {
+                    self.finish(finished, diagnostics);
+                }
                 continue;
             }
             let Some(material) = &mut current else { continue };
@@ -134,7 +136,9 @@ impl Reader<'_, '_> {
                 diagnostics.push(Diagnostic::warning(message).code("bad-value").at(at));
             }
         }
-        current.into_iter().for_each(|finished| self.finish(finished));
+        if let Some(finished) = current {
+            self.finish(finished, diagnostics);
+        }
         if let Some(first) = self.ignored_keywords.values().copied().min_by_key(|span| span.start) {
             let all: Vec<&str> = self.ignored_keywords.keys().map(String::as_str).collect();
             let message = format!("some statements have no counterpart and are left out: {}", all.join(", "));
@@ -183,7 +187,7 @@ impl Reader<'_, '_> {
             "d" => (m.opacity, m.opacity_at) = (number()?, statement),
             "tr" if m.opacity.is_none() => (m.opacity, m.opacity_at) = (number()?.map(|t| 1.0 - t), statement),
             "tr" => _ = number()?,
-            "illum" => m.model = number()?,
+            "illum" => (m.model, m.model_at) = (number()?, statement),
             "pr" => m.roughness = number()?,
             "pm" => m.metalness = number()?,
             "ps" => m.sheen = number()?,
@@ -314,11 +318,17 @@ impl Reader<'_, '_> {
     }
 
     /// Adds a material to the library, unless the library already contains one with this name.
-    fn finish(&mut self, mut material: MtlMaterial) {
+    fn finish(&mut self, mut material: MtlMaterial, diagnostics: &mut Diagnostics) {
         if material.drops_filter() {
             self.leave_out("Tf", material.filter_at);
         }
         let name = std::mem::take(&mut material.name);
+        if material.is_glass_by_model() {
+            let model = material.model.unwrap_or_default();
+            let message = format!("`illum {model}` makes the material `{name}` clear glass, so its `Kd` has no effect");
+            let note = Diagnostic::note(message).code("illum-glass").at(material.model_at);
+            diagnostics.push(note.help("write `illum 2` for an opaque material"));
+        }
         // The cause of an invisible material is the statement that sets its opacity.
         let at = if material.opacity.is_some_and(|opacity| opacity <= 0.0) { material.opacity_at } else { material.at };
         self.library.materials.entry(name).or_insert_with(|| (material.into_principled(), at));

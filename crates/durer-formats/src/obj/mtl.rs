@@ -25,6 +25,8 @@ pub(super) struct MtlMaterial {
     /// Span of the statement that sets the opacity.
     pub opacity_at: Span,
     pub model: Option<f32>,
+    /// Span of the statement that sets the illumination model.
+    pub model_at: Span,
     pub roughness: Option<f32>,
     pub metalness: Option<f32>,
     pub sheen: Option<f32>,
@@ -61,6 +63,14 @@ impl MtlMaterial {
             (_, 4 | 6 | 7 | 9) => 1.0,
             _ => 0.0,
         }
+    }
+
+    /// Returns true if the illumination model alone makes the material glass, although its colour
+    /// is that of an opaque surface.
+    pub fn is_glass_by_model(&self) -> bool {
+        let states_glass = self.opacity.is_some() || self.filter.is_some() || self.ior.is_some();
+        let is_colored = self.has_diffuse_map || self.diffuse.is_some_and(|color| color.max_element() > 0.1);
+        self.transmission() == 1.0 && !states_glass && is_colored && !self.is_physical()
     }
 
     fn opacity(&self) -> f32 {

@@ -197,8 +197,8 @@ impl Reader<'_> {
                 Some(map) => self.state.transforms.apply(map),
                 None => report.error(at, "the axis of a rotation must not be 0 0 0"),
             },
-            "LookAt" => match look_at(self.numbers(at)?) {
-                Some(map) => {
+            "LookAt" => match self.numbers::<9>(at).map(|numbers| (look_at(numbers), numbers))? {
+                (Some(map), _) => {
                     if let Some(camera) = self.camera.as_ref().filter(|_| !self.in_world) {
                         let warning = Diagnostic::warning("`LookAt` after `Camera` does not move the camera");
                         let warning = warning.code("bad-place").at(at).related(camera.at, "the camera");
@@ -206,10 +206,12 @@ impl Reader<'_> {
                     }
                     self.state.transforms.apply(map);
                 }
-                None => report.error(
+                (None, [x, y, z, to_x, to_y, to_z, ..]) => report.error(
                     at,
-                    "the eye and the target of `LookAt` must differ, and `up` must not be parallel to the viewing \
-                     direction",
+                    match [x, y, z] == [to_x, to_y, to_z] {
+                        true => "the eye and the target of `LookAt` are equal",
+                        false => "the `up` of `LookAt` is parallel to the viewing direction, or has no length",
+                    },
                 ),
             },
             "Transform" | "ConcatTransform" => {
@@ -258,8 +260,14 @@ impl Reader<'_> {
             },
             "Include" | "Import" => self.include(name, name_at, word == "Import"),
             "ObjectBegin" => self.object_begin(name, at),
-            "ObjectInstance" => self.instance(&name, name_at),
-            "NamedMaterial" => self.named_material(&name, name_at),
+            "ObjectInstance" => {
+                self.used_materials.extend(self.state.material_at.map(|at| (at.file, at.start)));
+                self.instance(&name, name_at);
+            }
+            "NamedMaterial" => {
+                self.state.material_at = Some(at.join(name_at));
+                self.named_material(&name, name_at);
+            }
             "MediumInterface" => {
                 let second = matches!(self.text().peek(report).map(|next| &next.token), Some(Token::Text(_)));
                 let outside = if second { self.name(at)?.0 } else { name.clone() };
@@ -310,7 +318,10 @@ impl Reader<'_> {
             "Sampler" => self.sampler(&keep(self, list)),
             "LightSource" => self.light(&name, at, list),
             "AreaLightSource" => self.area_light(&name, at, list),
-            "Material" => self.state.material = self.material(&name, at, list),
+            "Material" => {
+                self.state.material_at = Some(at);
+                self.state.material = self.material(&name, at, list);
+            }
             "MakeNamedMaterial" => self.make_named_material(name, at, list),
             "MakeNamedMedium" => self.make_named_medium(name, at, list),
             "Shape" => self.shape(&name, at, list),
@@ -390,6 +401,7 @@ impl Reader<'_> {
         let Some((_, state, _)) = self.stack.pop() else { return };
         if scope != Scope::Transform {
             self.check_area_light(state.area_light.as_ref(), Some((end, at)));
+            self.check_material(&state, (end, at));
         }
         match scope {
             Scope::Transform => self.state.transforms = state.transforms,

@@ -8,7 +8,7 @@
 use super::defs::{AreaLight, EnvironmentMapping, InfiniteLight};
 use super::language::Language;
 use super::params::{Kind, Param, Params};
-use super::state::{LIGHT, Reader};
+use super::state::{LIGHT, Reader, State};
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
@@ -191,6 +191,22 @@ impl Reader<'_> {
             Some((_, at)) => warning.related(at, "the scope ends here"),
             None => warning,
         });
+    }
+
+    /// Warns about a material that no shape of its scope follows, but that a shape precedes.
+    /// `outer` is the state of the enclosing scope, and `end` the directive that closes the scope.
+    pub fn check_material(&self, outer: &State, (end, closed): (&str, Span)) {
+        let place = |at: Option<Span>| at.map(|at| (at.file, at.start));
+        let (own, before) = (self.state.material_at, self.state.shapes > outer.shapes);
+        let Some(at) = own.filter(|_| before && place(own) != place(outer.material_at)) else { return };
+        if self.used_materials.contains(&(at.file, at.start)) {
+            return;
+        }
+        let message = format!("this material applies to no shape: no `Shape` follows it before `{end}`");
+        let warning =
+            durer_diag::Diagnostic::warning(message).code("bad-place").at(at).related(closed, "the scope ends here");
+        let warning = warning.effect("the shape before it has another material");
+        self.report.push(warning.help("write the material before its shape"));
     }
 
     /// Executes an `AreaLightSource` directive.

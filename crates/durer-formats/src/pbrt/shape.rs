@@ -41,6 +41,8 @@ impl Reader<'_> {
         if let Some(light) = &self.state.area_light {
             self.used_lights.insert((light.at.file, light.at.start));
         }
+        self.state.shapes += 1;
+        self.used_materials.extend(self.state.material_at.map(|at| (at.file, at.start)));
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
         let to_world = self.map(at);

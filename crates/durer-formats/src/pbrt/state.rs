@@ -34,6 +34,10 @@ pub(super) struct State {
     pub reversed: bool,
     /// Index of the current material.
     pub material: usize,
+    /// Directive that set the current material.
+    pub material_at: Option<Span>,
+    /// Number of shapes so far, which tells whether a shape precedes a directive in its scope.
+    pub shapes: usize,
     pub area_light: Option<Rc<AreaLight>>,
     /// Names of the media inside and outside the shapes that follow.
     pub inside: Option<String>,
@@ -111,6 +115,8 @@ pub(super) struct Reader<'a> {
     pub open_lights: BTreeMap<(u32, u32), (Span, usize, BTreeSet<usize>)>,
     /// Spans of the `AreaLightSource` directives that a shape follows, by file and start.
     pub used_lights: BTreeSet<(u32, u32)>,
+    /// Spans of the directives that set the material of a shape, by file and start.
+    pub used_materials: BTreeSet<(u32, u32)>,
     pub infinite: Vec<InfiniteLight>,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
@@ -146,6 +152,7 @@ impl<'a> Reader<'a> {
             in_world: false,
             open_lights: BTreeMap::new(),
             used_lights: BTreeSet::new(),
+            used_materials: BTreeSet::new(),
             infinite: Vec::new(),
             meshes: BTreeMap::new(),
             scene: Scene::default(),

@@ -148,7 +148,8 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
                 Err(ErrorReported)
             }
             Err(_) => {
-                self.report.error(self.values.last(), format!("a list cannot have {length} values"));
+                let message = format!("a list cannot have a negative number of values: {length}");
+                self.report.error(self.values.last(), message);
                 Err(ErrorReported)
             }
         }

@@ -34,12 +34,12 @@ use super::growth::ResourceLimits;
 use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::too_large;
-use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Background, Group, Scene};
 use files::LayerFiles;
 use layer::{Layer, Value};
-use reader::{Inherited, Reader};
+use reader::{Inherited, Invisible, Reader};
 use stage::Stage;
 use time::SampleTime;
 
@@ -111,14 +111,21 @@ fn scene(input: &ReadInput, report: &SharedReport, limits: &ResourceLimits) -> O
 }
 
 /// Returns the warning about a scene without surfaces, at the first of the invisible prims.
-fn no_surfaces(invisible: &[Span]) -> Diagnostic {
+fn no_surfaces(invisible: &[Invisible]) -> Diagnostic {
     let message = "the scene has no visible surfaces";
-    let Some(first) = invisible.first() else { return Diagnostic::warning(message).code("no-objects") };
-    let message = match invisible.len() {
-        1 => format!("{message}: the `visibility` of this prim is `invisible`"),
-        count => format!("{message}: the `visibility` of this prim and of {} more is `invisible`", count - 1),
+    let Some((first, attribute, value)) = invisible.first() else {
+        return Diagnostic::warning(message).code("no-objects");
     };
-    Diagnostic::warning(message).code("no-objects").at(*first).help("remove `visibility`, or write `inherited`")
+    let same = invisible.iter().filter(|(_, other, _)| other == attribute).count();
+    let message = match same {
+        1 => format!("{message}: the `{attribute}` of this prim is `{value}`"),
+        count => format!("{message}: the `{attribute}` of this prim and of {} more is `{value}`", count - 1),
+    };
+    let help = match *attribute {
+        "purpose" => "prims with this purpose are not rendered: remove `purpose`, or write `default`",
+        _ => "remove `visibility`, or write `inherited`",
+    };
+    Diagnostic::warning(message).code("no-objects").at(*first).help(help)
 }
 
 /// Returns the time at which attributes are read: the requested time in seconds, or the start of

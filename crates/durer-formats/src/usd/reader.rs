@@ -22,6 +22,9 @@ pub(super) struct Inherited {
     pub skeleton: [Option<String>; 2],
 }
 
+/// Prim that is left out: its span, and the attribute with its value that hides it.
+pub(super) type Invisible = (Span, &'static str, &'static str);
+
 /// Converts the prims of a stage to a scene.
 pub(super) struct Reader<'s, 'a> {
     pub stage: &'s Stage<'a>,
@@ -35,8 +38,8 @@ pub(super) struct Reader<'s, 'a> {
     pub cameras: Vec<CameraData>,
     /// True after the first dome light.
     pub has_dome: bool,
-    /// Spans of the prims that are invisible, and whose descendants are therefore left out.
-    pub invisible: Vec<Span>,
+    /// Prims that are invisible, and whose descendants are therefore left out.
+    pub invisible: Vec<Invisible>,
 }
 
 /// Material of the scene, with the names of the texture coordinates that its pictures use.

@@ -27,6 +27,11 @@ pub(super) fn parse(text: &str, file: u32, name: &str) -> Parsed<Layer> {
     Ok(parser.layer)
 }
 
+/// Returns the error about an opening parenthesis that is not closed before `next`.
+fn unclosed(open: Span, next: &str) -> SyntaxError {
+    SyntaxError { at: open, message: format!("this `(` is not closed: a `)` is missing before {next}") }
+}
+
 struct Parser<'a> {
     lexer: Lexer<'a>,
     layer: Layer,
@@ -216,6 +221,7 @@ impl Parser<'_> {
 
     /// Parses the metadata of a prim, of a variant or of the layer, up to the closing parenthesis.
     fn metadata(&mut self, prim: &mut PrimSpec) -> Parsed<()> {
+        let open = self.lexer.last();
         while !self.lexer.accept(")")? {
             if self.lexer.accept(";")? || self.lexer.accept(",")? {
                 continue;
@@ -224,8 +230,16 @@ impl Parser<'_> {
                 // A string without a name is a comment.
                 Token::Text(_) => continue,
                 Token::Word(word) => word.to_string(),
+                Token::End => return Err(unclosed(open, "the end of the file")),
+                Token::Symbol('{') => return Err(unclosed(open, "this `{`")),
                 other => return self.error(format!("expected the name of a field, found {other}")),
             };
+            // A prim cannot be in the metadata.
+            if matches!(word.as_str(), "def" | "over" | "class")
+                && matches!(self.lexer.peek()?, Token::Word(_) | Token::Text(_))
+            {
+                return Err(unclosed(open, &format!("`{word}`")));
+            }
             let is_edit = matches!(word.as_str(), "prepend" | "append" | "add" | "delete" | "reorder");
             let (operation, field) = if is_edit { (word, self.name("a field")?) } else { (String::new(), word) };
             self.lexer.expect("=")?;

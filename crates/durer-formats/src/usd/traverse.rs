@@ -39,10 +39,12 @@ impl Reader<'_, '_> {
             self.read_camera(prim, here.to_world);
         }
         if self.text(prim, "visibility").as_deref() == Some("invisible") {
-            self.invisible.push(prim.span());
+            self.invisible.push((prim.span(), "visibility", "invisible"));
             return;
         }
-        if matches!(self.text(prim, "purpose").as_deref(), Some("proxy" | "guide")) {
+        let purpose = self.text(prim, "purpose");
+        if let Some(left_out) = ["proxy", "guide"].into_iter().find(|word| purpose.as_deref() == Some(*word)) {
+            self.invisible.push((prim.span(), "purpose", left_out));
             return;
         }
         if type_name == "PointInstancer" {

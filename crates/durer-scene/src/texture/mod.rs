@@ -130,8 +130,12 @@ impl Texture {
         Texture { alpha: is_given.then(|| Opacity::Float(alpha.into())), ..self }
     }
 
-    /// True if all texels are equal.
+    /// True if all texels have the same colour and the same opacity.
     pub fn is_flat(&self) -> bool {
+        self.has_one_color() && self.all_opacities(|opacity| opacity == self.opacity(0))
+    }
+
+    fn has_one_color(&self) -> bool {
         match &self.texels {
             Texels::Eight(texels, _) => texels.iter().all(|texel| *texel == texels[0]),
             Texels::Float(texels) => texels.iter().all(|texel| *texel == texels[0]),
@@ -141,6 +145,11 @@ impl Texture {
     /// True if all texels, in linear red, green and blue, satisfy a condition.
     pub fn all_texels(&self, condition: impl Fn([f32; 3]) -> bool) -> bool {
         (0..self.count()).all(|at| condition(self.color(at)))
+    }
+
+    /// True if the opacities of all texels, from 0 to 1, satisfy a condition.
+    pub fn all_opacities(&self, condition: impl Fn(f32) -> bool) -> bool {
+        (0..self.count()).all(|at| condition(self.opacity(at)))
     }
 
     /// Returns a texture that shares the texels but has another mapping.

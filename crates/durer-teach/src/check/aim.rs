@@ -2,7 +2,7 @@
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
-use durer_scene::light::Illuminate as _;
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Ray, Vec3};
 
 /// If a beam covers at most this fraction of the visible points, it misses the scene.
@@ -31,7 +31,10 @@ pub(super) fn relative_intensity(world: &World, light: usize, point: Vec3) -> f3
     let emitter = &world.lights()[light];
     let Some((place, strongest)) = emitter.inverse_square() else { return 1.0 };
     let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.max_candela());
-    let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
+    // The light of a photometric light with a focal length fades as if it came from farther away.
+    let behind = if let Light::Photometric(own) = emitter { own.focal_length } else { 0.0 };
+    let distance = (point - place).length() + behind;
+    let full = most * strongest.max_element() / (distance * distance).max(f32::MIN_POSITIVE);
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
 }
 

@@ -37,11 +37,15 @@ struct AreaLightSums {
     back: f32,
     /// Sum over the same points if nothing occluded the light.
     front_free: f32,
+    /// Sum over the points behind the light if nothing occluded it.
+    back_free: f32,
     /// Number of rays that pass through glass only.
     glass: usize,
     rays: usize,
     /// The object that occludes most of the points in front of the light.
     blocker: Option<u32>,
+    /// The object that occludes most of the points behind the light.
+    back_blocker: Option<u32>,
 }
 
 /// Returns the objects that emit light and can be sampled, each with a flag that is true if it
@@ -50,8 +54,9 @@ pub(super) fn emissive_objects(scene_probe: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scene_probe.world();
     let emits = |(number, object): (usize, &Object)| {
         let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };
-        let emission = phong.emission.as_ref().filter(|emission| emission.radiance.max_element() > 0.0)?;
-        Some((number as u32, emission.two_sided))
+        let emission = phong.emission.as_ref()?;
+        let is_bright = scene_probe.radiance(object.material as usize).max_element() > 0.0;
+        is_bright.then_some((number as u32, emission.two_sided))
     };
     world.objects().iter().enumerate().filter_map(emits).take(MAX_FINDINGS).collect()
 }
@@ -142,7 +147,7 @@ fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLight
     let mut contribution = AreaLightSums::default();
     let mut flat = true;
     let parts = sampled_parts(object)?;
-    let mut blockers = Vec::new();
+    let (mut blockers, mut back_blockers) = (Vec::new(), Vec::new());
     for (place, surface, side) in points {
         for (u, part) in ON_LIGHT.into_iter().zip(parts.iter().cycle()) {
             let (point, normal) = if let Some(plane) = plane(object) {
@@ -166,6 +171,9 @@ fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLight
             if cosine > 0.0 {
                 contribution.front_free += cosine;
                 blockers.extend(blocker);
+            } else {
+                contribution.back_free -= cosine;
+                back_blockers.extend(blocker);
             }
             if blocker.is_none() {
                 contribution.front += cosine.max(0.0);
@@ -173,7 +181,7 @@ fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLight
             }
         }
     }
-    contribution.blocker = most_common(&blockers);
+    (contribution.blocker, contribution.back_blocker) = (most_common(&blockers), most_common(&back_blockers));
     (contribution.rays > 0).then_some((contribution, flat))
 }
 
@@ -274,6 +282,9 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
     let lights = emissive_objects(scene_probe);
     let say = |&(number, both): &(u32, bool)| {
         let (contribution, _) = measure_area_light(scene_probe, number)?;
+        if let Some(finding) = enclosed_and_turned(scene_probe, number, &contribution) {
+            return Some(finding);
+        }
         let blocker = contribution.blocker?;
         let back = if both { contribution.back } else { 0.0 };
         if contribution.rays < MIN_RAYS
@@ -303,6 +314,29 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
             .then(|| Finding::from(Diagnostic { severity, ..diagnostic }).affecting_whole_picture(whole))
     };
     lights.iter().filter_map(say).collect()
+}
+
+/// Reports a one-sided area light that faces away from everything visible, but is also occluded, so
+/// that turning it would not help.
+fn enclosed_and_turned(scene_probe: &SceneProbe, number: u32, sums: &AreaLightSums) -> Option<Finding> {
+    let all = sums.front + sums.back;
+    let is_hidden = sums.back_free >= 1.0 && sums.front_free < 1.0 && all <= MIN_VISIBLE_SHARE * sums.back_free;
+    let blocker = sums.back_blocker.filter(|_| is_hidden && sums.rays >= MIN_RAYS && scene_probe.is_dark())?;
+    let object = &scene_probe.world().objects()[number as usize];
+    let center = vector(object.bounds()?.center());
+    let name = scene_probe.object(number);
+    let diagnostic = Diagnostic::warning(format!(
+        "the {name} emits light, but it faces away from everything visible and is behind the {}",
+        scene_probe.object(blocker)
+    ))
+    .at(scene_probe.object_span(number))
+    .related(scene_probe.object_span(blocker), "the occluder")
+    .effect("the picture is black")
+    .help(match scene_probe.model_format() {
+        Some(_) => format!("check the transforms of the light and their order: its center is at {center}"),
+        None => format!("move the light to the side of the visible surfaces: its center is at {center}"),
+    });
+    Some(Finding::from(diagnostic).affecting_whole_picture(true))
 }
 
 /// Reports area lights inside glass, which paths hit only by chance or never.

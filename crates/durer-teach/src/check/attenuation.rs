@@ -12,6 +12,9 @@ use durer_scene::math::Vec3;
 
 /// Reports lights whose light is too weak when it arrives at the visible surfaces.
 pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() && !scene_probe.is_dark() {
+        return super::overwhelmed::faint(scene_probe);
+    }
     for_each_verdict(scene_probe, |light, verdict| {
         let LightVerdict::Faint(most) = verdict else { return None };
         let message = match description(scene_probe, light)?.value.position() {
@@ -24,6 +27,9 @@ pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
             false => diagnostic.effect("this light contributes hardly anything to the picture"),
         };
         let factor = 0.8 / most.max(1e-30);
+        if let Some(diagnostic) = super::overwhelmed::too_far(scene_probe, light, &diagnostic) {
+            return Some(diagnostic);
+        }
         if let Some((field, value)) = strength(scene_probe, span)
             && let Ok(written) = scene_probe.text(value).parse::<f32>()
         {

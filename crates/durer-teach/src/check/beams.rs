@@ -155,7 +155,7 @@ pub(super) fn inner_angle(scene_probe: &SceneProbe) -> Vec<Finding> {
         Some(Finding::from(
             match (scene_probe.field_span(light.span, &["angle"]), scene_probe.field_span(light.span, &["innerAngle"]))
             {
-                (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
+                (Some(a), Some(b)) => diagnostic.at(b).fix(b, angle).fix(a, inner),
                 _ => diagnostic.at(light.span),
             },
         ))

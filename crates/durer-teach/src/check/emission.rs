@@ -6,7 +6,6 @@ use super::lines::lines;
 use super::scene_probe::SceneProbe;
 use super::visibility::Visibility;
 use durer_diag::{Diagnostic, Span};
-use durer_render::world::Material;
 use durer_scene::math::Color;
 
 /// Brightness below which surfaces count as black, and below which lights are dim.
@@ -34,27 +33,28 @@ pub(super) fn dim_surfaces(scene_probe: &SceneProbe) -> Option<f32> {
 pub(super) fn shows_bright_lamp(scene_probe: &SceneProbe) -> bool {
     let world = scene_probe.world();
     let is_bright = |(number, _): (u32, bool)| {
-        let radiance = match world.materials().get(world.objects()[number as usize].material as usize) {
-            Some(Material::Phong(phong)) => phong.emission.as_ref().map_or(Color::ZERO, |emission| emission.radiance),
-            _ => Color::ZERO,
-        };
+        let radiance = scene_probe.radiance(world.objects()[number as usize].material as usize);
         let is_visible = scene_probe.visibilities()[number as usize] == Visibility::Visible;
         is_visible && scene_probe.input.exposure * radiance.max_element() > DIM
     };
     super::area_lights::emissive_objects(scene_probe).into_iter().any(is_bright)
 }
 
+/// Returns the object with the strongest emission and its radiance.
+pub(super) fn strongest_object(scene_probe: &SceneProbe) -> Option<(u32, Color)> {
+    let radiance = |(number, _): (u32, bool)| {
+        (number, scene_probe.radiance(scene_probe.world().objects()[number as usize].material as usize))
+    };
+    let all = super::area_lights::emissive_objects(scene_probe).into_iter().map(radiance);
+    all.max_by(|a, b| a.1.max_element().total_cmp(&b.1.max_element()))
+}
+
 /// Returns the material with the strongest emission and its radiance, if it is far brighter than
 /// the background.
 pub(super) fn strongest(scene_probe: &SceneProbe) -> Option<(usize, Color)> {
     let world = scene_probe.world();
-    let radiance = |(number, _): (u32, bool)| {
-        let material = world.objects()[number as usize].material as usize;
-        let Material::Phong(phong) = world.materials().get(material)? else { return None };
-        Some((material, phong.emission.as_ref()?.radiance))
-    };
-    let all = super::area_lights::emissive_objects(scene_probe).into_iter().filter_map(radiance);
-    let most = all.max_by(|a, b| a.1.max_element().total_cmp(&b.1.max_element()))?;
+    let (object, radiance) = strongest_object(scene_probe)?;
+    let most = (world.objects()[object as usize].material as usize, radiance);
     let background = world.environment().is_none() && world.cube_map().is_none();
     (background && most.1.max_element() > MIN_RATIO * world.background().max_element()).then_some(most)
 }

@@ -68,10 +68,19 @@ fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
             .effect(format!("{} of {what} is white", percent(white, clamped.len())));
     let background = &scene_probe.input.scene.background;
     let sky = background.sun().is_some() || background.cie_sky.is_some();
-    let light = super::area_lights::brightest(scene_probe).filter(|_| !sky);
     let exposure = number(stops + stops_of(scene_probe.input.exposure));
+    if let Some(diagnostic) = glowing_surfaces(scene_probe, &diagnostic) {
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
+    }
+    if let Some(diagnostic) = bright_light(scene_probe, &diagnostic, middle, &exposure).filter(|_| !sky) {
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
+    }
+    let light = super::area_lights::brightest(scene_probe).filter(|_| !sky);
     let help = match sky {
         true => format!("this sky has outdoor brightness, in cd/m^2: set `--exposure {exposure}`"),
+        false if super::area_lights::emissive_objects(scene_probe).is_empty() => format!(
+            "light is in cd/m^2: set `--exposure {exposure}`, or multiply the lights and the background by {factor}"
+        ),
         false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
@@ -82,6 +91,65 @@ fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
         None => Diagnostic { span: super::colors::background_span(scene_probe), ..diagnostic },
     };
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+}
+
+/// Fraction of the visible surfaces above which surfaces that emit light are no lights, but walls
+/// with the wrong material.
+const MAX_GLOWING: f32 = 0.4;
+
+/// Explains a bright picture in which most surfaces emit light, while another material is unused.
+fn glowing_surfaces(scene_probe: &SceneProbe, diagnostic: &Diagnostic) -> Option<Diagnostic> {
+    let world = scene_probe.world();
+    let glows = |hit: &ProbeHit| scene_probe.radiance(hit.material as usize) != Color::ZERO;
+    let glowing: Vec<u32> = scene_probe.hits().filter(|(_, hit)| glows(hit)).map(|(_, hit)| hit.object).collect();
+    let all = scene_probe.hits().count();
+    let unused = super::names::unused_materials(scene_probe);
+    let object = super::verdict::most_common(&glowing)?;
+    let is_wall = glowing.len() as f32 > MAX_GLOWING * all as f32;
+    let first = unused.first().filter(|_| is_wall && scene_probe.model_format().is_none())?;
+    let number = world.objects()[object as usize].material as usize;
+    let unused = super::names::material_name(scene_probe, *first).unwrap_or_else(|| format!("material {first}"));
+    let message =
+        format!("{} of the visible surfaces have material {number}, which emits light", percent(glowing.len(), all));
+    let cause = Diagnostic::warning(message)
+        .at(scene_probe.object_span(object))
+        .help(format!("check the `MaterialIndex` before these objects: no object uses {unused}"));
+    let material = scene_probe.input.scene.materials.get(number)?;
+    Some(Diagnostic { effect: diagnostic.effect.clone(), ..cause.related(material.span, "this material emits light") })
+}
+
+/// Explains a bright path-traced picture whose light comes mostly from one light source.
+fn bright_light(scene_probe: &SceneProbe, diagnostic: &Diagnostic, middle: f32, exposure: &str) -> Option<Diagnostic> {
+    let exposed = scene_probe.input.exposure;
+    let median = |light: usize| {
+        let lit = scene_probe.hits().filter_map(|(_, hit)| hit.contribution(light));
+        let mut all: Vec<f32> = lit.map(|lit| exposed * lit.contribution.max_element()).collect();
+        all.sort_by(f32::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    };
+    let lights = 0..scene_probe.world().lights().len().min(super::finding::MAX_FINDINGS);
+    let (light, most) = lights.map(|light| (light, median(light))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let span = span(scene_probe, light).filter(|_| most > 0.3 * middle && most > 1.0)?;
+    let factor = 0.5 / middle;
+    let unit = PHOTOMETRIC_FIELDS.into_iter().find_map(|field| Some((field, scene_probe.field_span(span, &[field])?)));
+    let strength = unit.and_then(|(field, place)| Some((field, scene_probe.text(place).parse::<f32>().ok()?)));
+    let less = match strength {
+        Some((field, value)) => format!("write `{field} {}`", number(value * factor)),
+        None => {
+            let color = scene_probe.world().lights()[light].color() * factor;
+            format!("multiply its colour by {}: `color {}`", number(factor), vector(color))
+        }
+    };
+    let what = match strength {
+        Some(("lux", value)) if value >= 1e4 => format!("`lux {}` is sunlight, in cd/m^2", number(value)),
+        _ => "this light is in cd/m^2".to_string(),
+    };
+    let place = unit.map(|(_, place)| place).or_else(|| scene_probe.field_span(span, &["color"]));
+    let diagnostic = diagnostic.clone().at(place.unwrap_or(span));
+    Some(diagnostic.help(match scene_probe.model_format() {
+        Some(_) => format!("set `--exposure {exposure}`, or multiply the strength of this light by {}", number(factor)),
+        None => format!("{what}: set `--exposure {exposure}`, or {less}"),
+    }))
 }
 
 /// Reports values above 1 in an eight-bit picture.
@@ -181,6 +249,12 @@ pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
     ]
 }
 
+/// Returns true if the picture shows a bright background, before which objects can be silhouettes.
+pub(super) fn has_bright_background(scene_probe: &SceneProbe) -> bool {
+    let behind = scene_probe.probes.iter().filter(|probe| probe.hit.is_none());
+    behind.map(|probe| probe.color.max_element()).fold(0.0, f32::max) > MIN_BRIGHT_BACKGROUND
+}
+
 /// Reports a picture that is almost black wherever it shows an object.
 pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.is_physical() {
@@ -192,9 +266,7 @@ pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     // Silhouettes before a bright background may be intentional.
-    let behind = scene_probe.probes.iter().filter(|probe| probe.hit.is_none());
-    let behind = behind.map(|probe| probe.color.max_element()).fold(0.0, f32::max);
-    let severity = if behind > MIN_BRIGHT_BACKGROUND { Severity::Note } else { Severity::Warning };
+    let severity = if has_bright_background(scene_probe) { Severity::Note } else { Severity::Warning };
     let message = format!("the brightest visible surface has a value of only {}", number(most));
     let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
         .effect("all visible surfaces are black, or nearly black")
@@ -246,10 +318,29 @@ fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
                 number(factor)
             ))
         }
+        None if scene_probe.model_format().is_some() && most > 1e-6 => dim_model(scene_probe, diagnostic, factor),
         None => diagnostic
             .help("check whether a light is enclosed, turned away or too weak, and whether fog absorbs its light"),
     };
     vec![Finding::from(diagnostic).only_describing()]
+}
+
+/// Places a finding about a dark picture of a model at its strongest emission.
+fn dim_model(scene_probe: &SceneProbe, diagnostic: Diagnostic, factor: f32) -> Diagnostic {
+    let needed = format!("the scene needs about {} times as much light", number(factor));
+    let Some((object, radiance)) = super::emission::strongest_object(scene_probe) else {
+        return diagnostic.help(format!("{needed}: increase the intensity of the lights, or set `--exposure`"));
+    };
+    let span = scene_probe.object_span(object);
+    let material = scene_probe.world().objects()[object as usize].material as usize;
+    let block = scene_probe.input.scene.materials.get(material).map(|written| written.span);
+    let places = [Some(span), block].into_iter().flatten();
+    let written = places.map(|block| super::written::place_of_color(scene_probe, block, radiance));
+    let place = written.into_iter().flatten().next().unwrap_or(span);
+    diagnostic
+        .at(place)
+        .label(format!("the {} emits only {}", scene_probe.object(object), vector(radiance)))
+        .help(format!("{needed}: increase this emission, or set `--exposure`"))
 }
 
 /// Reports a depth range that contains none of the picture's depths.

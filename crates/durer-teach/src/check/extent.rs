@@ -337,6 +337,10 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
+        // Water or glass around the camera is large on purpose.
+        if size > middle && around.contains(&object) && scene_probe.is_glass(object) {
+            continue;
+        }
         // A huge ball can represent the ground or the sky. Other checks report objects around the
         // camera and lights outside a sky.
         if size > middle && (!spoils || holds_eye(object) || is_sky_before_lights(scene_probe, object)) {
@@ -347,7 +351,10 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
             "the {} is {} times {word} than {}",
             scene_probe.object(object),
             number(ratio),
-            if sizes.len() == 2 { "the other object" } else { "most objects in this scene" }
+            match sizes[..] {
+                [(a, _), (b, _)] => format!("the {}", scene_probe.object(if a == object { b } else { a })),
+                _ => "most objects in this scene".into(),
+            }
         ))
         .at(scene_probe.object_span(object))
         .effect(match scene_probe.visibilities()[object as usize] {
@@ -380,7 +387,9 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
         let parts = angle.abs() / std::f32::consts::PI * 12.0;
         angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
     };
-    let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else { return Vec::new() };
+    let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else {
+        return sun_in_radians(scene_probe).into_iter().collect();
+    };
     let degrees = number(angle.to_degrees().round());
     let diagnostic = Diagnostic::warning(format!("the rotation by {angle} degrees may be in radians"))
         .effect("the object is hardly rotated")
@@ -390,6 +399,19 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
         Some(value) => diagnostic.at(value).fix(value, degrees),
         None => diagnostic.at(span),
     })]
+}
+
+/// Returns a note about a sun just above the horizon whose altitude may be in radians.
+fn sun_in_radians(scene_probe: &SceneProbe) -> Option<Finding> {
+    let altitude = scene_probe.input.scene.background.sun_altitude?;
+    let is_radians = altitude > 0.2 && altitude <= std::f32::consts::FRAC_PI_2 && altitude.fract() != 0.0;
+    let block = super::colors::background_span(scene_probe).filter(|_| is_radians)?;
+    let degrees = number(altitude.to_degrees().round());
+    let written = number(altitude);
+    let diagnostic = Diagnostic::note(format!("the sun is only {written} degrees above the horizon"))
+        .effect("the light is that of a sunset: dim and red")
+        .help(format!("angles are in degrees: if {written} is in radians, write `sunAltitude {degrees}`"));
+    Some(Finding::from(scene_probe.at_value(diagnostic, block, &["sunAltitude"])))
 }
 
 /// A rotation in the scene file, with the span of its transform, its possible keywords, and its

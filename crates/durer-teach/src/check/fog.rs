@@ -35,6 +35,68 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scene_probe.at_value(diagnostic, written.span, &["min", "max"]))]
 }
 
+/// Fraction of the light that is left at the visible surfaces, and brightness of the picture, below
+/// which fog that only absorbs light is reported.
+const MAX_LEFT: f32 = 0.3;
+const DIM: f32 = 0.15;
+
+/// Reports fog that scatters no light, but only absorbs it, and leaves the picture dark.
+pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let (Some(fog), Some(written)) = (scene_probe.world().fog(), &scene_probe.input.scene.fog) else {
+        return Vec::new();
+    };
+    let even = fog.region.is_none();
+    if !scene_probe.is_physical() || written.value.color != Color::ZERO || !even {
+        return Vec::new();
+    }
+    let mut ways: Vec<f32> =
+        scene_probe.hits().map(|(probe, hit)| hit.t * probe.ray.dir.length()).filter(|way| way.is_finite()).collect();
+    ways.sort_by(f32::total_cmp);
+    let Some(middle) = ways.get(ways.len() / 2) else { return Vec::new() };
+    let left = fp::exp(-fog.extinction.max_element() * middle);
+    let lit = |probe: &super::probes::Probe| {
+        probe.hit.as_ref().is_some_and(|hit| !scene_probe.world().may_emit(hit.material))
+    };
+    let mut shown: Vec<f32> =
+        (scene_probe.lit_probes().filter(|(probe, _)| lit(probe))).map(|(_, color)| color.max_element()).collect();
+    shown.sort_by(f32::total_cmp);
+    let is_dim = shown.get(shown.len() / 2).is_some_and(|brightness| *brightness < DIM);
+    if left > MAX_LEFT || !is_dim {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning("this fog scatters no light: its `color` is 0 0 0, so it only absorbs light")
+        .effect(format!(
+            "only {:.0} % of the light of a surface at the middle distance, {}, is left, and the picture is dark",
+            100.0 * left,
+            number(*middle)
+        ))
+        .help("for white fog, write `color 1 1 1`, the fraction of light that the fog scatters");
+    let value = scene_probe.field_span(written.span, &["color"]);
+    let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, "1 1 1"), written.span, &["color"]);
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+}
+
+/// Returns the bounds of a box for fog around all objects, as the fields of the box.
+fn box_around(scene_probe: &SceneProbe) -> String {
+    let bounds = scene_probe.world().bounds();
+    let size = bounds.size().max_element().max(1.0);
+    let [min, max] = [bounds.min - size, bounds.max + size].map(|corner| super::finding::vector(corner.round()));
+    format!("min {min} max {max}")
+}
+
+/// Returns true if light from infinity is the only light of a scene, or if there is any such light
+/// besides the background.
+fn needs_infinity(scene_probe: &SceneProbe) -> (bool, bool) {
+    let world = scene_probe.world();
+    let sky = world.environment().is_some()
+        || world.cube_map().is_some()
+        || world.background() != Color::ZERO && !world.is_dark();
+    let suns = world.lights().iter().any(|light| light.position().is_none());
+    let near = world.lights().iter().any(|light| light.position().is_some())
+        || world.objects().iter().any(|object| world.may_emit(object.material));
+    (sky && !near || suns, near)
+}
+
 /// Reports fog that blocks the light.
 pub(super) fn thick_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
@@ -71,31 +133,30 @@ pub(super) fn thick_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
             .label(format!("hides {} of the visible surfaces", percent(swallowed, scene_probe.hits().count())))
             .help(format!("`extinction` is per unit of the scene: try `extinction {some}`"));
         let value = scene_probe.field_span(span, &["extinction"]);
-        let diagnostic = diagnostic.fix_at(value, some);
+        // Thinner fog without bounds would still absorb all light from infinity.
+        let diagnostic = match fog.region.is_none() && needs_infinity(scene_probe).0 {
+            true => {
+                let text = format!("{some} {}", box_around(scene_probe));
+                let help = format!(
+                    "`extinction` is per unit of the scene, and light from the sun or sky does not pass through \
+                     unbounded fog: try `extinction {text}`"
+                );
+                diagnostic.help(help).fix_at(value, text)
+            }
+            false => diagnostic.fix_at(value, some),
+        };
         findings
             .push(Finding::from(scene_probe.at_value(diagnostic, span, &["extinction"])).affecting_whole_picture(true));
     } else if fog.region.is_none() {
-        let sky = world.environment().is_some()
-            || world.cube_map().is_some()
-            || world.background() != Color::ZERO && !world.is_dark();
-        let suns = world.lights().iter().any(|light| light.position().is_none());
-        let near = world.lights().iter().any(|light| light.position().is_some())
-            || world.objects().iter().any(|object| world.may_emit(object.material));
-        if sky && !near || suns {
-            let bounds = world.bounds();
-            let size = bounds.size().max_element().max(1.0);
-            let (min, max) = (bounds.min - size, bounds.max + size);
+        let (needed, near) = needs_infinity(scene_probe);
+        if needed {
             let diagnostic =
                 Diagnostic::warning("this fog is unbounded: no light from the sun or sky passes through it")
                     .effect(match near {
                         true => "lights at infinity and the background are black",
                         false => "the picture is black: light would have to cross unbounded fog",
                     })
-                    .help(format!(
-                        "add a box, such as `min {} max {}`",
-                        super::finding::vector(min.round()),
-                        super::finding::vector(max.round())
-                    ));
+                    .help(format!("add a box, such as `{}`", box_around(scene_probe)));
             findings.push(Finding::from(diagnostic.at(span)).affecting_whole_picture(!near));
         }
     }

@@ -4,7 +4,7 @@ use super::finding::{Finding, counted, vector};
 use super::scene_probe::SceneProbe;
 use super::view::with_field_edit;
 use super::visibility::{Visibility, has_eye};
-use durer_diag::Diagnostic;
+use durer_diag::{Diagnostic, Severity};
 use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 
@@ -58,4 +58,65 @@ fn is_below(bounds: Aabb, point: Vec3, up: Vec3) -> bool {
     let is_within = (0..3).all(|i| i == axis || (bounds.min[i]..=bounds.max[i]).contains(&point[i]));
     let height = (point - bounds.center())[axis] * up[axis].signum();
     size[axis] <= MAX_HEIGHT * size.max_element() && is_within && height > 0.0
+}
+
+/// Returns the flat, bounded object on which all others stand, and its height. It is horizontal,
+/// with y up, is larger than the others together, and the camera is above it.
+pub(super) fn floor(scene_probe: &SceneProbe) -> Option<(u32, f32)> {
+    let world = scene_probe.world();
+    let eye = world.camera().pose().center;
+    let is_flat = |bounds: &Aabb| bounds.size().y <= 1e-3 * bounds.size().max_element();
+    let area = |bounds: &Aabb| bounds.size().x * bounds.size().z;
+    let boxes = || {
+        let all = world.objects().iter().enumerate().take(super::finding::MAX_FINDINGS * 4);
+        all.filter_map(|(i, object)| Some((i as u32, object.bounds().filter(|bounds| !bounds.is_empty())?)))
+    };
+    let flat = boxes().filter(|(_, bounds)| is_flat(bounds) && area(bounds) > 0.0);
+    let (floor, own) = flat.max_by(|a, b| area(&a.1).total_cmp(&area(&b.1)))?;
+    let others = boxes().filter(|(object, _)| *object != floor).fold(Aabb::EMPTY, |all, (_, bounds)| all.union(bounds));
+    let height = own.center().y;
+    let size = others.size().max_element();
+    let stand = !others.is_empty() && others.min.y > height - 0.1 * size && others.min.y < height + 0.3 * size;
+    let is_wide = own.size().x > others.size().x && own.size().z > others.size().z;
+    (stand && is_wide && eye.y > height).then_some((floor, height))
+}
+
+/// Reports a camera that is upside down above the flat object on which all others stand.
+pub(super) fn upside_down_above_floor(scene_probe: &SceneProbe) -> Option<Finding> {
+    let world = scene_probe.world();
+    let (floor, _) = floor(scene_probe).filter(|_| world.camera_frame().up.y < -0.3)?;
+    let is_seen = scene_probe.hits().any(|(_, hit)| hit.object == floor);
+    let pose = world.camera().pose();
+    let turned = vector(if pose.up.y < -0.5 { -pose.up } else { Vec3::Y });
+    let span = scene_probe.input.scene.camera_span;
+    let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
+        .related(scene_probe.object_span(floor), "the ground")
+        .effect("the objects hang from the ground");
+    let help = match scene_probe.model_format().map(|format| format.name) {
+        Some("glTF") => "turn the camera the right way up; the four numbers of its `rotation` are x, y, z and w".into(),
+        Some(_) => "turn the camera the right way up".into(),
+        None => format!("write `up {turned}`: `up` points to the upper edge of the picture"),
+    };
+    let diagnostic = diagnostic.help(help).fix_at(scene_probe.field_span(span, &["up"]), turned);
+    is_seen.then(|| Finding::from(scene_probe.at_value(diagnostic, span, &["up"])))
+}
+
+/// Returns a note about a camera whose `up` lies in the ground, so that the picture lies on its
+/// side. Pictures that are higher than wide may be turned on purpose.
+pub(super) fn on_its_side(scene_probe: &SceneProbe, normal: Vec3, ground: u32) -> Option<Finding> {
+    let world = scene_probe.world();
+    let pose = world.camera().pose();
+    let level = |v: Vec3| v.normalize_or_zero().dot(normal).abs();
+    let is_level = level(pose.up) < 1e-4 && level(pose.direction) < 0.7 && level(world.camera_frame().up) < 0.3;
+    let is_seen = scene_probe.hits().any(|(_, hit)| hit.object == ground);
+    if !is_level || !is_seen || scene_probe.input.job.height > scene_probe.input.job.width || !has_eye(scene_probe) {
+        return None;
+    }
+    let (span, up) = (scene_probe.input.scene.camera_span, vector(normal));
+    let diagnostic = Diagnostic::warning("the picture lies on its side: the camera's `up` is parallel to the ground")
+        .related(scene_probe.object_span(ground), "the ground")
+        .effect("the ground is at the left or right edge of the picture")
+        .help(format!("write `up {up}`: `up` points to the upper edge of the picture"));
+    let diagnostic = Diagnostic { severity: Severity::Note, ..diagnostic };
+    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["up"])))
 }

@@ -187,6 +187,9 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     .effect("hardly anything except the background is visible")
     .help(match model {
         true => "use `--studio sun`, which lights a model from outside and replaces its lights, or `--environment`",
+        false if background_span(scene_probe).is_some() => {
+            "move the light to the camera's side, add another light, or give the `Background` a brighter `color`"
+        }
         false => "move the light to the camera's side, add another light, or write `Background { color 0.3 0.3 0.3 }`",
     });
     let span = scene_probe.input.scene.lights.iter().flatten().next().map(|light| light.span);

@@ -29,7 +29,9 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     let all = (0..visibilities.len() as u32).filter(|i| !nothing.contains(i));
     // A light outside the picture is normal.
     let is_lamp = |i: u32| scene_probe.world().may_emit(scene_probe.world().objects()[i as usize].material);
-    let outside = |i: &u32| visibilities[*i as usize] == Visibility::Outside && !is_lamp(*i);
+    // An object beside or behind the camera can be seen in a mirror.
+    let is_mirrored = |i: u32| scene_probe.probes.iter().any(|probe| probe.indirect.contains(&i));
+    let outside = |i: &u32| visibilities[*i as usize] == Visibility::Outside && !is_lamp(*i) && !is_mirrored(*i);
     let out: Vec<u32> = all.clone().filter(outside).collect();
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match visibilities[i as usize] {
@@ -52,10 +54,11 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
     if let Some(&first) = out.first().filter(|_| findings.is_empty()) {
+        let place = super::placement::beside_picture(scene_probe, first);
         let message = match out.len() {
-            1 => format!("the {} is not in the picture", scene_probe.object(first)),
+            1 => format!("the {} is not in the picture: it is {place}", scene_probe.object(first)),
             n => format!(
-                "{} are not in the picture; the first is the {}",
+                "{} are not in the picture; the first, the {}, is {place}",
                 counted(n, "object", "objects"),
                 scene_probe.object(first)
             ),
@@ -69,8 +72,11 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         let severity = if left < scene_probe.probes.len() { severity(out.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scene_probe.object_span(first))
-            .effect("the camera looks elsewhere")
-            .help("check the position of the object and the transforms that enclose it");
+            .effect("the object is invisible");
+        let diagnostic = match super::transforms::why_moved(scene_probe, first) {
+            Some((span, words)) => diagnostic.related(span, "the transforms of the object").help(words),
+            None => diagnostic.help("check the position of the object and the transforms that enclose it"),
+        };
         findings.push(Finding::from(diagnostic));
     }
     if let Some(&(first, by)) = hidden.first() {
@@ -85,8 +91,12 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
             true => format!("the {a} is inside the {b}{more}"),
             false => format!("the {a} is hidden by the {b}{more}"),
         };
-        let plane = plane(&scene_probe.world().objects()[by as usize]).is_some();
+        let offset = plane(&scene_probe.world().objects()[by as usize]).map(|plane| plane.offset);
+        let plane = offset.is_some();
         let help = match (plane, inside) {
+            (true, _) if offset == Some(0.0) => {
+                "the object is behind the plane, which passes through the origin: move the object or the plane"
+            }
             (true, _) => "check the sign of `offset`: the object is behind the plane, which is at p · normal = offset",
             (false, true) => "move the object outside, or move or shrink the other object",
             (false, false) => "move the object to the other side, or move the object that hides it",

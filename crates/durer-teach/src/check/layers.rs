@@ -4,8 +4,8 @@ use super::finding::{Finding, MAX_FINDINGS, number as number_word, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_render::world::Material;
-use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Layering, Walls};
+use durer_scene::material::{PatternMaterial, PrincipledMaterial};
 use durer_scene::math::fp;
 use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 use durer_scene::texture::Channel;
@@ -13,11 +13,13 @@ use durer_scene::texture::Channel;
 /// Reflectances and transmittances below this value count as black.
 const BLACK: f32 = 0.002;
 
+/// A layered material that objects use, with its index, its description in the scene file, and its
+/// parameters.
+pub(super) type Layered<'s> = (usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial);
+
 /// Returns the layered materials that objects use, each with its index, its description in the
 /// scene file, and its parameters.
-pub(super) fn layers<'s>(
-    scene_probe: &SceneProbe<'s>,
-) -> Vec<(usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial)> {
+pub(super) fn layers<'s>(scene_probe: &SceneProbe<'s>) -> Vec<Layered<'s>> {
     let used = |number: usize| scene_probe.world().objects().iter().any(|object| object.material as usize == number);
     let all = scene_probe.input.scene.materials.iter().enumerate();
     let own = all.filter_map(|(number, material)| match &material.value {
@@ -41,14 +43,20 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.input.scene.render_defaults.no_scattering.is_some() {
         return Vec::new();
     }
-    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+    let say = |(number, material, m): Layered| {
         if scene_probe.material_rays()[number] == 0 {
             return None;
         }
         let base = m.base_weight * m.base_color.max_element();
         let textured = m.base_color_texture.is_some() || m.base_spectrum.is_some();
-        let skin =
-            m.specular_weight * m.specular_color.max_element() > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
+        let reflection = m.specular_weight * m.specular_color.max_element();
+        let skin = reflection > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
+        if let Some((words, message, help)) = absorbing_layer(m) {
+            let diagnostic = Diagnostic::warning(format!("{message}, so material {number} is black"))
+                .effect("objects with this material are black under any light, except for highlights")
+                .help(help);
+            return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, words)));
+        }
         let word = if m.emission_luminance > 0.0 || m.thin_film_weight > 0.0 {
             return None;
         } else if m.base_metalness > 0.9 {
@@ -82,12 +90,73 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
         let words = [word, "baseWeight"];
         Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &words)))
     };
-    layers(scene_probe).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).chain(black_side(scene_probe)).collect()
+}
+
+/// Returns the fields of a layer that lets no light pass or reflects none, a clause about it, and
+/// help.
+fn absorbing_layer(m: &PrincipledMaterial) -> Option<(&'static [&'static str], &'static str, &'static str)> {
+    let is_lit = m.emission_luminance > 0.0 || m.opacity < 0.5;
+    let coat = m.coat_weight > 0.99 && m.coat_color.max_element() <= BLACK && m.coat_color_texture.is_none();
+    let plain = m.specular_weight_texture.is_none() && m.specular_color_texture.is_none() && m.metal_ior.is_none();
+    let metal = m.base_metalness > 0.99 && m.base_metalness_texture.is_none() && m.layering == Layering::OpenPbr;
+    let dull = metal && m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && plain;
+    match () {
+        () if is_lit => None,
+        () if coat => Some((
+            &["coatColor"],
+            "the coat lets no light through",
+            "write `coatColor 1 1 1` for a clear coat; `coatColor` is the fraction of light that passes through it",
+        )),
+        () if dull && m.specular_weight <= BLACK => Some((
+            &["specularWeight"],
+            "`specularWeight` 0 removes the reflection of the metal",
+            "write `specularWeight 1`: a metal only has its reflection",
+        )),
+        () => None,
+    }
+}
+
+/// Reports two-sided materials that show the camera only a black side.
+fn black_side(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let is_black = |number: u32| match scene_probe.input.scene.materials.get(number as usize).map(|own| &own.value) {
+        Some(ParsedMaterial::Principled(m)) => {
+            let skin = m.specular_weight * m.specular_color.max_element() > BLACK;
+            let plain = m.base_color_texture.is_none() && m.base_spectrum.is_none() && m.emission_luminance == 0.0;
+            let base = m.base_weight * m.base_color.max_element();
+            base <= BLACK && plain && !skin && m.coat_weight == 0.0 && m.transmission_weight == 0.0
+        }
+        _ => false,
+    };
+    let say = |(number, material): (usize, &Spanned<ParsedMaterial>)| {
+        let ParsedMaterial::Solid(PatternMaterial::TwoSided(sides), _) = &material.value else { return None };
+        let hits = scene_probe.hits().filter(|(_, hit)| hit.material as usize == number);
+        let (all, backs) = hits.fold((0, 0), |(all, backs), (_, hit)| (all + 1, backs + usize::from(hit.from_behind)));
+        let (shown, other, side) = match () {
+            () if all == 0 => return None,
+            () if backs == 0 => (sides.material1, sides.material2, "front"),
+            () if backs == all => (sides.material2, sides.material1, "back"),
+            () => return None,
+        };
+        if !is_black(shown) || is_black(other) || world.materials().len() <= other as usize {
+            return None;
+        }
+        let message =
+            format!("the {side} of material {number}, which the camera sees, is black: it is material {shown}");
+        let diagnostic = Diagnostic::warning(message)
+            .at(material.span)
+            .effect("the objects are black under any light")
+            .help("swap the two `materialIndex`: the first one is the material of the front");
+        Some(Finding::from(diagnostic))
+    };
+    let all = scene_probe.input.scene.materials.iter().enumerate();
+    if scene_probe.is_physical() { all.filter_map(say).take(MAX_FINDINGS).collect() } else { Vec::new() }
 }
 
 /// Reports glass that transmits no light.
 pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+    let say = |(number, material, m): Layered| {
         let color = m.transmission_color.max_element();
         if m.transmission_weight < 0.5 || m.transmission_scatter.max_element() > 0.0 || color >= 1.0 {
             return None;
@@ -133,7 +202,7 @@ pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports glass whose index of refraction is 1 or impossible.
 pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+    let say = |(number, material, m): Layered| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
         let plain =
             m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && m.emission_luminance == 0.0 && m.thin_film_weight == 0.0;
@@ -166,25 +235,27 @@ fn has_black_opacity(scene_probe: &SceneProbe, material: usize) -> bool {
     let Some(texture) = map.and_then(|map| world.textures().get(map as usize)) else { return false };
     let mapping = texture.mapping().cloned().unwrap_or_default();
     let channel = match mapping.channel {
+        None if texture.has_alpha() => return texture.all_opacities(|opacity| opacity == 0.0),
+        Some(Channel::Alpha) => return texture.all_opacities(|opacity| opacity == 0.0),
         None | Some(Channel::Red) => 0,
         Some(Channel::Green) => 1,
         Some(Channel::Blue) => 2,
-        Some(Channel::Alpha | Channel::Angle) => return false,
+        Some(Channel::Angle) => return false,
     };
-    (!texture.has_alpha() || mapping.channel.is_some()) && texture.all_texels(|texel| texel[channel] == 0.0)
+    texture.all_texels(|texel| texel[channel] == 0.0)
 }
 
 /// Reports surfaces whose opacity is zero, or whose opacity texture is black.
 pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+    let say = |(number, material, m): Layered| {
         if has_black_opacity(scene_probe, number) {
             let message =
                 format!("the opacity texture of material {number} is 0 everywhere in the channel that is used");
             let diagnostic = Diagnostic::warning(message)
                 .effect("objects with this material are invisible: light passes through unchanged")
                 .help(
-                    "use a texture that is white where the surface is present; of a texture without alpha, the red \
-                     channel is used, or the one after a colon, as in `picture.png:b`",
+                    "use a picture that is opaque where the surface is present: its alpha is used or, without alpha, \
+                     its red channel, or the channel after a colon, as in `picture.png:b`",
                 );
             return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["opacityTexture"])));
         }

@@ -347,3 +347,19 @@ pub(super) fn below_epsilon(scene_probe: &SceneProbe) -> Vec<Finding> {
         .help(format!("scale the entire scene, including the camera and lights, by about {factor}"));
     vec![Finding::from(diagnostic.at(scene_probe.input.scene.camera_span)).affecting_whole_picture(true)]
 }
+
+/// Reports screens of a CAVE whose corners are in mirrored order.
+pub(super) fn mirrored_wall(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Camera::Cave(cave) = scene_probe.world().camera() else { return Vec::new() };
+    let mirrored = |row: &&[f32; 9]| {
+        let [a, b, c] = [0, 3, 6].map(|i| Vec3::from_slice(&row[i..i + 3]));
+        (b - a).cross(c - a).dot(cave.center - a) < 0.0
+    };
+    let Some(wall) = cave.walls.iter().position(|row| mirrored(&row)) else { return Vec::new() };
+    let message = format!("the corners of wall {} are in mirrored order, seen from the `center`", wall + 1);
+    let diagnostic = Diagnostic::warning(message).effect("the picture on this wall is mirrored").help(
+        "the corners are the lower left, the lower right and the upper left one, seen from inside: exchange left and \
+         right",
+    );
+    vec![Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["walls"]))]
+}

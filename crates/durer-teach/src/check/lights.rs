@@ -153,7 +153,11 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
             (Some(_), false) => "turn the light, or move the occluder",
             (Some(_), true) => "move the light or the occluder",
         };
-        Some(diagnostic.related(scene_probe.object_span(object), "the occluder").help(help))
+        let diagnostic = diagnostic.related(scene_probe.object_span(object), "the occluder").help(help);
+        // A camera in water or glass shows it on purpose, although its surface casts a shadow.
+        let eye = scene_probe.world().camera().pose().center;
+        let is_water = scene_probe.is_glass(object) && containing_objects(scene_probe.world(), eye).contains(&object);
+        Some(if is_water { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic })
     })
 }
 
@@ -320,8 +324,12 @@ fn grazing(scene_probe: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
 /// Reports lights that lie in a visible plane or shine parallel to it, and therefore do not
 /// illuminate it.
 fn along_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let floor = super::ground::floor(scene_probe).map(|(object, _)| object);
     let flat = |object: u32| scene_probe.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
+        // Only light from infinity meets all of a bounded floor at the same angle.
+        let is_far = scene_probe.world().lights()[*light].position().is_none();
+        let flat = |object: u32| flat(object) || is_far && floor == Some(object);
         let all =
             scene_probe.hits().filter(|(_, hit)| flat(hit.object)).filter_map(|(_, hit)| hit.contribution(*light));
         let (count, along) = all.fold((0, 0), |(n, along), lit| (n + 1, along + usize::from(is_grazing(lit))));
@@ -331,12 +339,20 @@ fn along_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
         .into_iter()
         .filter(is_along)
         .filter_map(|light| grazing(scene_probe, &[light]))
+        .map(|diagnostic| diagnostic.effect("the surface that the light grazes gets none of its light"))
+        .map(|diagnostic| match scene_probe.model_format().map(|format| format.name) {
+            Some("glTF") => diagnostic.help("turn the light downwards: without a rotation, it shines along -z"),
+            _ => diagnostic,
+        })
         .map(Finding::from)
         .collect()
 }
 
 /// Reports lights behind the visible surfaces.
 pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() && !scene_probe.is_dark() {
+        return if super::physical::has_only_lights(scene_probe) { along_plane(scene_probe) } else { Vec::new() };
+    }
     let mut findings = mostly_dark(scene_probe);
     if findings.is_empty() {
         findings = along_plane(scene_probe);

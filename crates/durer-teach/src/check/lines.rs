@@ -1,6 +1,11 @@
-//! Lines of text files with their spans.
+//! Spans, and the lines of text files with their spans.
 
 use durer_diag::Span;
+
+/// Returns true if two spans are the same bytes of the same file. The operator `==` ignores them.
+pub(super) fn is_same_span(a: Span, b: Span) -> bool {
+    (a.file, a.start, a.end) == (b.file, b.start, b.end)
+}
 
 /// Returns the lines of a file with their spans. A span does not contain the white space at the end
 /// of its line.

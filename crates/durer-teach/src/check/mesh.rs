@@ -136,7 +136,10 @@ pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
                 "a ray that enters the glass is refracted only once, so everything behind appears to be inside the \
                  glass",
             )
-            .help("use a closed body, such as a sphere or a closed mesh, or set the index of refraction to 1");
+            .help(match scene_probe.is_physical() && scene_probe.model_format().is_none() {
+                true => "use a closed body, such as a sphere or a closed mesh, or write `walls thin` for a pane",
+                false => "use a closed body, such as a sphere or a closed mesh, or set the index of refraction to 1",
+            });
         // Water surfaces are often flat on purpose.
         if *what != "triangle" && !world.rules().is_bit_compatible() {
             diagnostic.severity = durer_diag::Severity::Note;

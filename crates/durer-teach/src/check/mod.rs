@@ -22,9 +22,11 @@ mod extent;
 mod faces;
 mod facing;
 mod finding;
+mod fine_textures;
 mod fog;
 mod ground;
 mod hidden;
+mod idle_layers;
 mod integrator;
 mod invisible;
 mod layers;
@@ -33,21 +35,26 @@ mod lights;
 mod lines;
 mod mesh;
 mod mesh_files;
+mod metals;
 mod names;
 mod neutral;
 mod numbers;
 mod objects;
 mod optics;
+mod options;
+mod overwhelmed;
 mod pattern_border;
 mod patterns;
 mod physical;
 pub mod picture;
+mod placement;
 mod probes;
 mod quadrics;
 mod quirks;
 mod repair;
 mod room;
 mod scene_probe;
+mod secondary;
 mod shapes;
 mod solid;
 mod strays;
@@ -56,9 +63,11 @@ mod table;
 mod tests;
 mod textures;
 mod transforms;
+mod uses;
 mod verdict;
 mod view;
 mod visibility;
+mod world_scale;
 mod written;
 
 use durer_diag::{Diagnostic, Diagnostics, Severity};
@@ -132,7 +141,10 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
         ],
     ),
     ("out-of-scale", &["unseen", "light-blocked", "tiny", "camera-inside", "seen-from-behind", "light-divides"]),
-    ("camera-inside", &["seen-from-behind", "light-inside", "light-behind", "light-blocked", "unseen"]),
+    (
+        "camera-inside",
+        &["seen-from-behind", "light-inside", "light-behind", "light-blocked", "lamp-blocked", "lamp-turned", "unseen"],
+    ),
     ("degenerate-mesh", &["out-of-scale"]),
     ("camera-away", &["light-cancelled", "light-behind", "light-blocked", "light-faint", "pattern-scale", "edge-on"]),
     ("thick-fog", &["too-dark", "lamp-turned", "lamp-blocked"]),
@@ -151,6 +163,17 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("too-small", &["tiny", "pattern-scale", "light-behind", "light-cancelled"]),
     ("tiny", &["unseen"]),
     ("epsilon", &["tiny"]),
+    ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", &["normal-map", "no-coordinates", "flat-texture"]),
+    ("no-emitter", &["flat-texture", "too-dark", "one-color"]),
+    ("not-there", &["black-material", "no-coordinates", "flat-texture", "normal-map"]),
+    ("thick-fog", &["black-fog"]),
+    ("black-fog", &["too-dark", "mostly-black", "one-color"]),
+    ("lamp-in-glass", &["too-bright", "mostly-black", "too-dark", "one-color"]),
+    ("scaled-move", &["unseen", "squashed", "plane-through"]),
+    ("angle-first", &["radians"]),
+    ("metal-default", &["nothing-mirrored", "mostly-black", "too-dark"]),
+    ("mirrored-wall", &["upside-down"]),
+    ("too-dark", &["one-color"]),
 ];
 
 /// Returns all findings about a compiled scene, with causes first. They include the diagnostics of
@@ -203,7 +226,10 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     {
         findings.retain(|finding| finding.diagnostic.code != "unseen");
     }
-    ordered(findings)
+    options::blame_options(&scene_probe, &mut findings);
+    world_scale::blame_world_scale(&scene_probe, &mut findings);
+    let named = findings.into_iter().map(|finding| names::name_materials(&scene_probe, finding));
+    ordered(named.collect())
 }
 
 /// Returns the diagnostics of the reader and the compiler as findings, for a scene that cannot be

@@ -34,6 +34,7 @@ const HELP: &[(&str, &str)] = &[
     ("thick-film", "use a film about as thick as a wavelength of light"),
     ("wide-scatter", "use a smaller scattering distance"),
     ("no-coordinates", "add texture coordinates to the mesh"),
+    ("normal-map", "a normal map is mostly light blue: use this picture for heights or colours instead"),
     ("flat-texture", "check the image, its transform and the texture coordinates"),
     ("squashed", "check the transforms that enclose the object"),
     ("tiny", "check the size of the object and the transforms that enclose it"),
@@ -44,6 +45,7 @@ const HELP: &[(&str, &str)] = &[
 const WORDS: &[(&str, &str)] = &[
     ("`emissionColor`", "emission colour"),
     ("`emissionLuminance`", "emission"),
+    ("`emissionTexture`", "emission texture"),
     ("`opacity`", "opacity"),
     ("`transmissionColor`", "transmission colour"),
     ("`transmissionDepth` is 0", "the absorption distance is 0"),

@@ -2,13 +2,14 @@
 
 use super::faces::overlapping;
 use super::finding::{Finding, MAX_FINDINGS, number, vector};
+use super::lines::is_same_span;
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
 use super::visibility::Visibility;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::math::{Ray, Vec3};
-use durer_scene::scene::{MatrixOp, Object as Written, ObjectKind};
+use durer_scene::scene::{CsgOperation, MatrixOp, Object as Written, ObjectKind};
 use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -28,10 +29,19 @@ pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning("this triangle has no area: its vertices are on one line")
             .at(object.span)
             .effect("the triangle is invisible")
-            .help("check whether two vertices are equal");
+            .help(match equal_vertices(object) {
+                Some([a, b]) => format!("`vertex{a}` and `vertex{b}` are equal: change one of them"),
+                None => "move one of the vertices away from the line".into(),
+            });
         Finding::from(diagnostic).affecting_whole_picture(scene_probe.world().objects().len() == 1)
     };
     scene_probe.world().objects().iter().filter(flat).map(say).collect()
+}
+
+/// Returns the numbers of two equal vertices of a triangle.
+fn equal_vertices(object: &Object) -> Option<[usize; 2]> {
+    let corners = triangle(object)?;
+    [[0, 1], [1, 2], [0, 2]].into_iter().find(|&[a, b]| corners[a] == corners[b])
 }
 
 /// Returns the solids that a few hundred test rays all miss.
@@ -82,10 +92,27 @@ pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("the {} is empty", scene_probe.object(object)))
             .at(scene_probe.object_span(object))
             .effect("the solid is invisible")
-            .help("check for a subtracted part that covers the first part, and for parts that do not overlap");
+            .help(match operation(scene_probe, object) {
+                Some(CsgOperation::Difference) => "check for a subtracted part that covers the first part",
+                Some(CsgOperation::Intersection) => "move the parts until all of them overlap",
+                Some(CsgOperation::Xor) => {
+                    "move a part: only points inside an odd number of parts remain, so equal parts leave nothing"
+                }
+                Some(CsgOperation::Union | CsgOperation::Merge) => {
+                    "check the parts of the solid: each of them is empty"
+                }
+                None => "check for a subtracted part that covers the first part, and for parts that do not overlap",
+            });
         Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none())
     };
     empty_solids(scene_probe).into_iter().map(say).chain(empty_grids(scene_probe)).collect()
+}
+
+/// Returns the operation of a solid.
+fn operation(scene_probe: &SceneProbe, object: u32) -> Option<CsgOperation> {
+    let span = scene_probe.object_span(object);
+    let own = scene_probe.input.scene.objects().find(|own| is_same_span(own.span, span))?;
+    if let ObjectKind::Solid(operation, _) = &own.node { Some(*operation) } else { None }
 }
 
 /// Reports grids whose spheres fill no cell.
@@ -227,6 +254,14 @@ pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         there.push(i);
     }
+    // All parts of two uses of one definition coincide.
+    let mut messages: Vec<String> = Vec::new();
+    findings.retain(|finding| {
+        let message = &finding.diagnostic.message;
+        let is_new = !messages.contains(message);
+        messages.push(message.clone());
+        is_new
+    });
     findings
 }
 
@@ -261,6 +296,10 @@ fn in_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
 fn coincidence(scene_probe: &SceneProbe, first: usize, second: usize) -> Finding {
     let objects = scene_probe.world().objects();
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
+    if let Some(diagnostic) = super::uses::at_the_same_place(scene_probe, first, second).filter(|_| is_same_span(a, b))
+    {
+        return Finding::from(diagnostic);
+    }
     let alike = objects[first].material == objects[second].material;
     let diagnostic = Diagnostic::warning(format!(
         "the {} coincides with the {}",

@@ -2,12 +2,10 @@
 //! paths that are too short for glass.
 
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
-use super::layers::{layers, thickness};
+use super::layers::{Layered, layers, thickness};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
-use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 use durer_scene::spectrum::ColorMode;
 
 /// Thickness in micrometres above which a thin film shows no interference colours.
@@ -20,14 +18,10 @@ const MAX_LEAST_MEAN_FREE_PATH: f32 = 3.0;
 /// Minimum deviation of the index of refraction from 1 for which light is visibly bent.
 const MIN_IOR_DIFFERENCE: f32 = 1e-3;
 
-/// A layered material that an object uses, with its index, its description in the scene file, and
-/// its parameters.
-type Used<'s> = (usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial);
-
 /// Reports thin films that are too thick to show colours, usually because a value was written in
 /// nanometres instead of micrometres.
 pub(super) fn thick_film(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let say = |(index, material, m): Used| {
+    let say = |(index, material, m): Layered| {
         if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
             return None;
         }
@@ -44,7 +38,7 @@ pub(super) fn thick_film(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Reports scattering bodies that are much thinner than their mean free path.
 pub(super) fn wide_scatter(scene_probe: &SceneProbe) -> Vec<Finding> {
-    let say = |(index, material, m): Used| {
+    let say = |(index, material, m): Layered| {
         let thick = thickness(scene_probe, index)?;
         let way = m.subsurface_radius * m.subsurface_radius_scale.max_element();
         let least = m.subsurface_radius * m.subsurface_radius_scale.min_element();
@@ -73,7 +67,7 @@ pub(super) fn no_spectrum(scene_probe: &SceneProbe) -> Vec<Finding> {
     if transport.is_none_or(|transport| transport.color == ColorMode::Spectral) {
         return Vec::new();
     }
-    let say = |(index, material, m): Used| {
+    let say = |(index, material, m): Layered| {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
@@ -97,7 +91,7 @@ pub(super) fn short_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
         return limited;
     }
     let bounces = scene_probe.input.job.settings.bounces;
-    let say = |(index, material, m): Used| {
+    let say = |(index, material, m): Layered| {
         let rays = scene_probe.material_rays()[index];
         let bends = m.walls != Walls::Thin && (m.specular_ior - 1.0).abs() > MIN_IOR_DIFFERENCE;
         let glass = m.transmission_weight > 0.5 && m.base_metalness < 0.5 && m.opacity > 0.5;

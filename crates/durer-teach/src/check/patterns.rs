@@ -4,11 +4,13 @@
 use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::probes::Probe;
 use super::scene_probe::SceneProbe;
+use super::shapes::is_black;
 use durer_diag::Diagnostic;
 use durer_render::world::{Material, World};
 use durer_scene::material::{ColorNoise, PatternMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as ParsedMaterial;
+use durer_scene::texture::Texture;
 
 /// Number of steps per pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
@@ -70,7 +72,12 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
             ways.is_some_and(|(point, ways)| ways.into_iter().any(|way| changes(&look, point, way)))
         };
         let fine = points.iter().filter(varies).count();
-        let (message, effect, help) = if let Some((message, help)) = why_uniform(scene_probe, &look, &material.value) {
+        let share_texture = match &world.materials()[number] {
+            Material::Mix(_, _, Some(map)) => world.textures().get(*map as usize),
+            _ => None,
+        };
+        let uniform = why_uniform(scene_probe, &look, &material.value, share_texture);
+        let (message, effect, help) = if let Some((message, help)) = uniform {
             (
                 message,
                 "the pattern is invisible because only one colour or a few large patches are in the picture",
@@ -109,10 +116,11 @@ pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
 
 /// Returns the point that a probe hits, and the two sides of its pixel, projected onto the surface
 /// there.
-fn footprint(scene_probe: &SceneProbe, probe: &Probe, width: f32) -> Option<(Vec3, [Vec3; 2])> {
+fn footprint(scene_probe: &SceneProbe, probe: &Probe, width: PixelWidth) -> Option<(Vec3, [Vec3; 2])> {
     let (at, hit) = (scene_probe.world().intersect(&probe.ray, &mut ())?, probe.hit.as_ref()?);
     let (n, dir) = (at.surface.n_geo, probe.ray.dir.normalize_or_zero());
-    let (tilt, side) = (n - n.dot(dir) * dir, hit.t * probe.ray.dir.length() * width);
+    let side = width.constant + hit.t * probe.ray.dir.length() * width.per_distance;
+    let tilt = n - n.dot(dir) * dir;
     let upwards = tilt.try_normalize().unwrap_or_else(|| dir.any_orthonormal_vector());
     let onto_surface = |way: Vec3| side * (way - dir * (way.dot(n) / dir.dot(n)));
     Some((at.surface.position, [upwards, upwards.cross(dir)].map(onto_surface)))
@@ -129,8 +137,15 @@ fn why_uniform(
     scene_probe: &SceneProbe,
     look: &PatternSampler,
     material: &ParsedMaterial,
+    share_texture: Option<&Texture>,
 ) -> Option<(String, &'static str)> {
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
+    if let (PatternMaterial::Mix(_), Some(texture)) = (solid, share_texture)
+        && is_black(texture)
+    {
+        let message = "the `shareTexture` of this mix is black everywhere: only its second material is visible";
+        return Some((message.into(), "use a picture that is white where the first material should be visible"));
+    }
     if let PatternMaterial::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
         let help = "use a `share` between 0 and 1 to show both materials";
@@ -156,10 +171,19 @@ fn why_uniform(
     (cell > MAX_CELL_SIZE * size).then_some((message, help))
 }
 
-/// Estimates the width of a pixel at distance 1.
-fn pixel(scene_probe: &SceneProbe) -> f32 {
+/// Width of a pixel: a constant part, for cameras with parallel rays, and a part per unit of
+/// distance.
+#[derive(Clone, Copy)]
+struct PixelWidth {
+    constant: f32,
+    per_distance: f32,
+}
+
+/// Estimates the width of a pixel.
+fn pixel(scene_probe: &SceneProbe) -> PixelWidth {
     let [a, b] = [0, scene_probe.probes.len() - 1].map(|i| &scene_probe.probes[i]);
     let (p, q) = (a.pixel, b.pixel);
-    let apart = (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32;
-    (a.ray.dir.normalize_or_zero() - b.ray.dir.normalize_or_zero()).length() / apart.sqrt().max(1.0)
+    let apart = ((p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32).sqrt().max(1.0);
+    let turn = (a.ray.dir.normalize_or_zero() - b.ray.dir.normalize_or_zero()).length();
+    PixelWidth { constant: (a.ray.origin - b.ray.origin).length() / apart, per_distance: turn / apart }
 }

@@ -29,8 +29,18 @@ const DARKNESS_CHECKS: &[&str] = &["light-inside", "light-blocked", "light-behin
 
 /// Returns true if a check is for local lighting and does not apply to the scene.
 pub(super) fn does_not_apply(scene_probe: &SceneProbe, code: &str) -> bool {
-    let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark() || code == "light-inside";
+    let own = ["light-inside", "light-behind", "light-faint"];
+    let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark() || own.contains(&code);
     scene_probe.is_physical() && LOCAL_LIGHT_CHECKS.contains(&code) && !says_why()
+}
+
+/// Returns true if all light comes from lights: nothing else emits light.
+pub(super) fn has_only_lights(scene_probe: &SceneProbe) -> bool {
+    let world = scene_probe.world();
+    let black = world.environment().is_none()
+        && world.cube_map().is_none()
+        && (world.background() == Color::ZERO || world.is_dark());
+    black && super::area_lights::emissive_objects(scene_probe).is_empty()
 }
 
 /// Reports a scene in which nothing emits light.
@@ -40,17 +50,13 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
     let dark_sky = (world.environment().is_none() || !scaled)
         && world.cube_map().is_none()
         && (world.background() == Color::ZERO || world.is_dark());
-    let radiance = |material: &Compiled| match material {
-        Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
-        Compiled::Mix(..) => None,
-    };
-    let of = |material: u32| world.materials().get(material as usize).and_then(radiance).unwrap_or_default();
+    let of = |material: u32| scene_probe.radiance(material as usize);
     let emits = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
         || world
             .objects()
             .iter()
             .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Mix(..))))
-            && world.materials().iter().any(|material| radiance(material).is_some());
+            && (0..world.materials().len() as u32).any(|material| of(material) != Color::ZERO);
     if !scene_probe.is_physical()
         || !dark_sky
         || emits
@@ -66,6 +72,18 @@ pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
     let format = scene_probe.model_format();
     if let Some((number, material)) = emitter {
         let black = of(number as u32) == Color::ZERO;
+        let compiled = world.materials().get(number).and_then(|material| match material {
+            Compiled::Phong(phong) => phong.emission.as_ref(),
+            Compiled::Mix(..) => None,
+        });
+        if compiled.is_some_and(|emission| emission.radiance != Color::ZERO) && black {
+            let message = format!("nothing emits light: the `emissionTexture` of material {number} is black");
+            let diagnostic = Diagnostic::warning(message)
+                .effect("the picture is black")
+                .help("use a picture that is bright where light is emitted");
+            let diagnostic = scene_probe.at_value(diagnostic, material.span, &["emissionTexture"]);
+            return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
+        }
         let message = match black {
             true => format!("nothing emits light: the `emissionColor` of material {number} is black"),
             false => format!("nothing emits light: no object uses the emissive material {number}"),

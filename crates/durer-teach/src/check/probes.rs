@@ -4,7 +4,7 @@
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
 use durer_formats::{SceneFormat, scene_format_for};
-use durer_render::integrator::trace::TermKind;
+use durer_render::integrator::trace::{TermKind, TraceNode};
 use durer_render::integrator::{IntegratorKind, RenderSettings, Tree};
 use durer_render::render::explain::{SceneNames, explain_ray};
 use durer_render::render::{Job, center_ray, raster};
@@ -53,6 +53,8 @@ pub(super) struct Probe {
     pub ray: Ray,
     pub color: Color,
     pub hit: Option<ProbeHit>,
+    /// Objects that the ray reaches after a reflection or a refraction.
+    pub indirect: Vec<u32>,
 }
 
 /// First surface that a probe's camera ray hits, and the light at that point.
@@ -242,9 +244,18 @@ impl ProbeHit {
     }
 }
 
+/// Adds the objects that the rays of a term hit.
+fn add_hits(term: &TraceNode, objects: &mut Vec<u32>) {
+    if let TermKind::Ray { hit: Some(hit), .. } = &term.kind {
+        objects.push(hit.object);
+    }
+    term.terms.iter().for_each(|inner| add_hits(inner, objects));
+}
+
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
-        let mut probe = Probe { pixel, ray, color: tree.sum(), hit: None };
+        let mut probe = Probe { pixel, ray, color: tree.sum(), hit: None, indirect: Vec::new() };
+        tree.root.terms.iter().for_each(|term| add_hits(term, &mut probe.indirect));
         let TermKind::Ray { hit: Some(hit), .. } = &tree.root.kind else { return probe };
         let mut seen = ProbeHit {
             object: hit.object,

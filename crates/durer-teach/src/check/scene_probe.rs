@@ -4,6 +4,7 @@ use super::aim::{BeamMiss, beam_miss};
 use super::brightness::{brightest, exposed_colors};
 use super::mesh_files::{MeshFile, files, models};
 use super::probes::{CheckInput, Probe, ProbeGrid};
+use super::shapes::is_black;
 use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
 use durer_render::world::Material;
@@ -26,6 +27,7 @@ pub struct SceneProbe<'a> {
     meshes: OnceLock<Vec<MeshFile<'a>>>,
     models: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
+    radiances: OnceLock<Vec<Color>>,
 }
 
 impl<'a> Deref for SceneProbe<'a> {
@@ -48,6 +50,7 @@ impl<'a> SceneProbe<'a> {
             meshes: OnceLock::new(),
             models: OnceLock::new(),
             material_rays: OnceLock::new(),
+            radiances: OnceLock::new(),
         }
     }
 
@@ -112,6 +115,23 @@ impl<'a> SceneProbe<'a> {
     /// Returns the meshes of a scene that was read from a model file.
     pub(super) fn models(&self) -> &[MeshFile<'a>] {
         self.models.get_or_init(|| models(self))
+    }
+
+    /// Returns the radiance that a material emits, before a texture is applied. It is black if the
+    /// texture is black everywhere, and for a mix of materials.
+    pub(super) fn radiance(&self, material: usize) -> Color {
+        let world = self.world();
+        let emitted = |material: &Material| {
+            let Material::Phong(phong) = material else { return Color::ZERO };
+            let map = phong.principled.as_ref().and_then(|own| own.maps.emission);
+            let texture = map.and_then(|map| world.textures().get(map as usize));
+            match &phong.emission {
+                Some(emission) if !texture.is_some_and(is_black) => emission.radiance,
+                _ => Color::ZERO,
+            }
+        };
+        let all = self.radiances.get_or_init(|| world.materials().iter().map(emitted).collect());
+        all.get(material).copied().unwrap_or_default()
     }
 
     /// Returns, for each material, the number of rays that hit it, either directly or as part of a

@@ -1,9 +1,10 @@
-//! Properties of objects and lights that several checks use.
+//! Properties of objects, lights and textures that several checks use.
 
 use durer_render::world::{Geometry, Object};
 use durer_scene::light::{Light, PointLight, SpotLight};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::{Plane, Primitive, Shape as _};
+use durer_scene::texture::Texture;
 
 /// Returns the shape of an object if it is a single primitive.
 pub(super) fn shape(object: &Object) -> Option<&Primitive> {
@@ -47,4 +48,9 @@ pub(super) fn spread_direction(i: u32, count: u32) -> Vec3 {
     let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(count);
     let r = (1.0 - z * z).sqrt();
     Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
+}
+
+/// Returns true if all texels of a texture are black.
+pub(super) fn is_black(texture: &Texture) -> bool {
+    texture.all_texels(|texel| texel == [0.0; 3])
 }

@@ -4,9 +4,9 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    area_lights, attenuation, beams, clipping, colors, exposure, extent, facing, fog, hidden, integrator, invisible,
-    layers, lens, lights, mesh, names, numbers, objects, optics, pattern_border, patterns, physical, quadrics, quirks,
-    room, solid, strays, textures, view,
+    area_lights, attenuation, beams, clipping, colors, exposure, extent, facing, fine_textures, fog, hidden,
+    idle_layers, integrator, invisible, layers, lens, lights, mesh, metals, names, numbers, objects, optics,
+    pattern_border, patterns, physical, quadrics, quirks, room, secondary, solid, strays, textures, transforms, view,
 };
 
 /// A kind of finding, with its stable code and the function that searches for it. Each is a row of
@@ -70,6 +70,7 @@ checks! {
     "below-plane": "a plane between the camera and all other objects", hidden::below_plane;
     "plane-through": "a plane that passes through the middle of most objects", view::plane_through;
     "upside-down": "a camera whose `up` points into the ground", view::upside_down;
+    "mirrored-wall": "a screen of a CAVE whose corners are in mirrored order", lens::mirrored_wall;
     "edge-on": "a plane seen edge-on", lens::edge_on;
     "long-up": "a camera's `up` that is used as written, without unit length", quirks::long_up;
     "stretched": "a picture that is not square, with a program that stretches it", quirks::stretched;
@@ -83,6 +84,7 @@ checks! {
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
     "fog-away": "fog that no camera ray passes through", fog::away;
     "thick-fog": "fog that blocks all light", fog::thick_fog;
+    "black-fog": "fog that only absorbs light and leaves the picture dark", fog::black_fog;
     "lamp-turned": "an area light that faces away from everything visible", area_lights::facing_away;
     "lamp-blocked": "an area light that is occluded from everything visible", area_lights::blocked;
     "lamp-in-glass": "a light inside or behind glass, which paths find only by chance or never", area_lights::in_glass;
@@ -113,17 +115,21 @@ checks! {
     "black-material": "a material that reflects no light", colors::black;
     "light-cancelled": "a light whose colour the materials do not reflect", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
-    "no-bounces": "paths or secondary rays that end too early for mirrors, glass or indirect light", colors::no_bounces;
-    "dull-glass": "glass whose colour absorbs all light", colors::opaque_glass;
+    "no-bounces": "paths or secondary rays that end too early for mirrors, glass or indirect light", secondary::no_bounces;
+    "metal-default": "a glTF material that is a black metal because it states no `metallicFactor`", metals::metal_by_default;
+    "idle-layer": "a layer of a material that another field of the material removes", idle_layers::idle_layer;
+    "dull-glass": "glass whose colour absorbs all light", secondary::opaque_glass;
     "nothing-mirrored": "mirrors that have nothing to reflect", integrator::nothing_mirrored;
     "thick-film": "a thin film that is too thick to show colours", optics::thick_film;
     "wide-scatter": "a scattering object much thinner than the mean free path of light in it", optics::wide_scatter;
     "no-spectrum": "glass with dispersion in a picture that is not rendered spectrally", optics::no_spectrum;
-    "odd-index": "glass with an impossible index of refraction", colors::odd_index;
+    "odd-index": "glass with an impossible index of refraction", secondary::odd_index;
     "same-color": "objects with the colour of the background", colors::background_colored;
-    "no-coordinates": "a texture on an object without texture coordinates", colors::no_coordinates;
-    "flat-texture": "a texture that shows only one colour", textures::flat_texture;
-    "normal-map": "a normal map that is grey, like a map of heights", textures::normal_maps;
+    "no-coordinates": "a texture on an object without texture coordinates", textures::no_coordinates;
+    "flat-texture": "a texture that shows only one colour or value", textures::flat_texture;
+    "fine-texture": "a texture whose repetitions are smaller than a pixel", fine_textures::fine_texture;
+    "normal-map": "a normal map that contains heights or colours", textures::normal_maps;
+    "high-bumps": "a bump map as high as its object is wide", textures::high_bumps;
     // Shapes and meshes.
     "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
     "turned-triangle": "triangles that face the opposite way from their neighbours", facing::turned_triangles;
@@ -138,6 +144,8 @@ checks! {
     "mesh-quads": "faces that this year's program cannot read", quirks::quads;
     "open-glass": "a glass object that is not closed", mesh::open_glass;
     "squashed": "an object that its transforms make flat or tiny", objects::squashed;
+    "scaled-move": "a translation that a scale before it makes tiny or huge", transforms::scaled_move;
+    "angle-first": "a rotation whose angle is written before its axis", transforms::angle_first;
     "same-place": "two objects with coinciding surfaces", objects::duplicates;
     "light-twice": "a light that is defined twice", lights::duplicates;
     // The picture.
@@ -150,14 +158,14 @@ checks! {
     "one-color": "a picture of one colour, from an unknown cause", exposure::one_color;
     // These are unusual but mostly harmless.
     "dialect": "the dialect that was detected for the scene", reported;
-    "radians": "a rotation that may be in radians", extent::radians;
+    "radians": "an angle that may be in radians", extent::radians;
     "foreign-word": "a word from the dialect of another year", reported;
     "portability": "a scene that the official program of that year would reject", reported;
     "comment": "a comment that does not begin with `#`", reported;
     "tiny": "an object smaller than a pixel", invisible::tiny;
     "unseen": "objects outside the picture, or hidden", invisible::invisible;
     "unused-define": "a definition that is never used", names::unused_define;
-    "unused-material": "a material that no object uses", colors::unused;
+    "unused-material": "a material that no object uses", names::unused_material;
     "mesh-file": "a part of a mesh file that was ignored", reported;
 }
 

@@ -1,8 +1,11 @@
-//! Checks for transforms that move objects out of the picture.
+//! Checks for transforms in the wrong order: those that move objects out of the picture, scales
+//! that also scale a translation, and rotations whose angle comes first.
 
-use super::finding::vector;
+use super::finding::{Finding, MAX_FINDINGS, number, vector};
+use super::lines::is_same_span;
 use super::scene_probe::SceneProbe;
-use durer_diag::Span;
+use super::visibility::Visibility;
+use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind};
 
@@ -12,6 +15,24 @@ use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind};
 pub(super) fn moved_out_of_view(scene_probe: &SceneProbe, is_free: &dyn Fn(Vec3) -> bool) -> Option<(Span, String)> {
     let objects = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects);
     objects.filter_map(|object| of(scene_probe, object, is_free)).next()
+}
+
+/// Returns the span of the transform around an object that is not in the picture, and a sentence
+/// about how it moves the object there.
+pub(super) fn why_moved(scene_probe: &SceneProbe, number: u32) -> Option<(Span, String)> {
+    let span = scene_probe.object_span(number);
+    let mut all: Vec<&Object> = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects).collect();
+    while let Some(object) = all.pop() {
+        if let ObjectKind::Transform(_, inner) = &object.node
+            && is_same_span(inner.span, span)
+        {
+            return of(scene_probe, object, &|_| true);
+        }
+        if !matches!(object.node, ObjectKind::Solid(..)) {
+            all.extend(object.node.children());
+        }
+    }
+    None
 }
 
 fn of(scene_probe: &SceneProbe, object: &Object, is_free: &dyn Fn(Vec3) -> bool) -> Option<(Span, String)> {
@@ -45,6 +66,22 @@ fn of(scene_probe: &SceneProbe, object: &Object, is_free: &dyn Fn(Vec3) -> bool)
         );
         return Some((object.span, words));
     }
+    // One translation alone may move it away.
+    let without = |left_out: usize| {
+        let rest: Vec<MatrixOp> = ops.iter().enumerate().filter(|(i, _)| *i != left_out).map(|(_, op)| *op).collect();
+        local.map(|place| matrix(&rest).transform_point3(place).as_vec3())
+    };
+    let moves = ops.iter().enumerate().filter(|(_, op)| matches!(op, MatrixOp::Translate(_)));
+    let mut to_blame = moves.filter(|(i, _)| ops.len() > 1 && without(*i).into_iter().any(sees));
+    if let (Some((i, MatrixOp::Translate(by))), None) = (to_blame.next(), to_blame.next()) {
+        let words = format!(
+            "the object's transforms move it from {from} to {to}; without the translation by {}, it would be at {}, in \
+             the picture",
+            vector(*by),
+            vector(without(i)[0])
+        );
+        return Some((object.span, words));
+    }
     local.into_iter().any(|place| sees(place.as_vec3())).then(|| {
         let words = format!(
             "the object's transforms move it from {from} to {to}; without them, it would be in the picture: check \
@@ -60,4 +97,124 @@ fn around(bounds: Aabb) -> [Vec3; 7] {
     let (center, half) = (bounds.center(), 0.45 * bounds.size());
     let [x, y, z] = [half * Vec3::X, half * Vec3::Y, half * Vec3::Z];
     [center, center - x, center + x, center - y, center + y, center - z, center + z]
+}
+
+/// Fraction of an object's size below which a scaled translation hardly moves the object, and above
+/// which the translation is meant to move it.
+const NEGLIGIBLE: f32 = 0.05;
+const NOTABLE: f32 = 0.3;
+/// Factor by which a scale must change a translation to be reported.
+const MIN_FACTOR: f32 = 4.0;
+
+/// Reports scales before a translation that make it tiny or huge.
+pub(super) fn scaled_move(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let mut findings = Vec::new();
+    for object in scene_probe.input.scene.objects() {
+        let ObjectKind::Transform(ops, inner) = &object.node else { continue };
+        let found = world.objects().iter().enumerate().find(|(_, own)| is_same_span(own.span, inner.span));
+        let Some((index, own)) = found else { continue };
+        let Some((scale, by, factor)) = scale_before_move(ops) else { continue };
+        let Some(size) = own.bounds().filter(|bounds| !bounds.is_empty()).map(|bounds| bounds.size().max_element())
+        else {
+            continue;
+        };
+        let moved = factor * by.length();
+        let whole: f32 = ops.iter().filter_map(uniform_scale).product();
+        // A later scale that undoes the first one shows that the size is intended.
+        let is_undone = (0.1..10.0).contains(&whole) && factor < 1.0 / MIN_FACTOR;
+        let hardly = is_undone && moved < NEGLIGIBLE * size && by.length() > NOTABLE * size;
+        let shift = by - factor * by;
+        let is_lost = scene_probe.visibilities()[index] == Visibility::Outside && factor > MIN_FACTOR;
+        let meant = own.bounds().map_or(Vec3::ZERO, |bounds| bounds.center()) + shift;
+        let away = is_lost && super::visibility::is_in_view(scene_probe, meant);
+        if !hardly && !away || findings.len() == MAX_FINDINGS {
+            continue;
+        }
+        let message = format!(
+            "the scale by {} before the translation by {} also scales it: the object moves by {}",
+            number(scale),
+            vector(by),
+            vector(factor * by)
+        );
+        let diagnostic = Diagnostic::warning(message)
+            .at(object.span)
+            .effect(match away {
+                true => "the object is outside the picture",
+                false => "the object is hardly moved",
+            })
+            .help("write the `Translate` before the `Scale`: the transform written last is applied first");
+        findings.push(Finding::from(diagnostic));
+    }
+    findings
+}
+
+/// Returns the factor of an operation that scales all axes alike.
+fn uniform_scale(op: &MatrixOp) -> Option<f32> {
+    match *op {
+        MatrixOp::UniformScale(s) => Some(s.abs()),
+        MatrixOp::Scale(v) if (v.abs().max_element() - v.abs().min_element()) < 1e-3 * v.abs().max_element() => {
+            Some(v.x.abs())
+        }
+        _ => None,
+    }
+}
+
+/// Returns the last scale before the first translation of a transform, the translation, and the
+/// product of all scales before it.
+fn scale_before_move(ops: &[MatrixOp]) -> Option<(f32, Vec3, f32)> {
+    let at = ops.iter().position(|op| matches!(op, MatrixOp::Translate(_)))?;
+    let MatrixOp::Translate(by) = ops[at] else { return None };
+    let scales: Vec<f32> = ops[..at].iter().filter_map(uniform_scale).collect();
+    let factor: f32 = scales.iter().product();
+    let is_far = factor > MIN_FACTOR || factor < 1.0 / MIN_FACTOR;
+    scales.last().filter(|_| is_far && by != Vec3::ZERO).map(|scale| (*scale, by, factor))
+}
+
+/// Component of an axis above which it is probably an angle in degrees.
+const MIN_DEGREES: f32 = 5.0;
+
+/// Reports rotations whose four numbers are probably the angle and then the axis.
+pub(super) fn angle_first(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for object in scene_probe.input.scene.objects() {
+        let ObjectKind::Transform(ops, _) = &object.node else { continue };
+        for op in ops {
+            let MatrixOp::Rotate(axis, angle) = *op else { continue };
+            let rest = Vec3::new(axis.y, axis.z, angle);
+            let is_axis = rest.abs().max_element() <= 1.0 && (rest.length() - 1.0).abs() < 0.02;
+            if axis.x.abs() < MIN_DEGREES || !is_axis || findings.len() == MAX_FINDINGS {
+                continue;
+            }
+            let message = format!("this rotation turns by {} degrees about the axis {}", number(angle), vector(axis));
+            let right = format!("{} {}", vector(rest), number(axis.x));
+            let effect = if angle == 0.0 { "the object is not rotated" } else { "the object is hardly rotated" };
+            let diagnostic = Diagnostic::warning(message)
+                .effect(effect)
+                .help(format!("the axis comes first, and then the angle: write `Rotate {{ {right} }}`"));
+            findings.push(Finding::from(match rotation_values(scene_probe, object.span) {
+                Some(place) => diagnostic.at(place).fix(place, right),
+                None => diagnostic.at(object.span),
+            }));
+        }
+    }
+    findings
+}
+
+/// Returns the span of the four numbers of the first rotation in a transform.
+fn rotation_values(scene_probe: &SceneProbe, transform: Span) -> Option<Span> {
+    let bytes = scene_probe.input.files.bytes(transform.file)?;
+    let rest = bytes.get(transform.end as usize..)?;
+    let word = rest.windows(6).position(|word| word.eq_ignore_ascii_case(b"rotate"))?;
+    let open = word + rest[word..].iter().position(|byte| *byte == b'{')? + 1;
+    let close = open + rest[open..].iter().position(|byte| *byte == b'}')?;
+    let (text, file) = (&rest[open..close], transform.file);
+    let before = text.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+    let start = transform.end as usize + open + before;
+    let length = text.trim_ascii().len();
+    (text.trim_ascii().split(u8::is_ascii_whitespace).filter(|part| !part.is_empty()).count() == 4).then_some(Span {
+        file,
+        start: start as u32,
+        end: (start + length) as u32,
+    })
 }

@@ -53,8 +53,9 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         let backs = scene_probe.hits().filter(|(_, hit)| hit.object == object && hit.from_behind).count();
         let walls = !physical && !scene_probe.input.job.settings.shade_back && backs * 50 > rays;
         let wrong = super::extent::encloses_camera_wrongly(scene_probe, object);
-        // The scene is visible through clear glass.
-        if scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0 && !dark && !walls && !wrong {
+        // The scene is visible through clear glass, and objects under water get no direct light.
+        let is_clear = scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0;
+        if is_clear && !walls && !wrong && (!dark || contains_objects(scene_probe, object)) {
             continue;
         }
         let swallowed = wrong || is_alone(scene_probe, object);
@@ -92,6 +93,14 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
     }
     findings
+}
+
+/// Returns true if the centre of another bounded object is inside an object.
+fn contains_objects(scene_probe: &SceneProbe, outer: u32) -> bool {
+    let objects = scene_probe.world().objects();
+    let others = objects.iter().enumerate().filter(|(number, _)| *number as u32 != outer);
+    let mut centers = others.filter_map(|(_, object)| Some(object.bounds()?.center()));
+    centers.any(|center| objects[outer as usize].contains(center))
 }
 
 /// Returns true if the picture of paths is dark and shows no bounded object except an opaque object
@@ -371,7 +380,11 @@ pub(super) fn upside_down(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let (eye, objects) = (world.camera().pose().center, world.bounds());
     let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, world_plane(scene_probe, i)?)));
-    let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
+    let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else {
+        let no_planes = world.objects().iter().all(|object| object.bounds().is_some());
+        let above_floor = || super::ground::upside_down_above_floor(scene_probe);
+        return if no_planes { above_floor().into_iter().collect() } else { Vec::new() };
+    };
     let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
     let height = |p: &Vec3| p.dot(n) - d;
     let size = objects.size().max_element();
@@ -381,8 +394,11 @@ pub(super) fn upside_down(scene_probe: &SceneProbe) -> Vec<Finding> {
     // A ceiling with objects hanging from it would look the same. If objects touch the plane, it is
     // the ground.
     let lowest = objects.corners().iter().map(height).fold(f32::INFINITY, f32::min);
-    if !stand || !hit || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+    if !stand || !hit || lowest > 0.3 * size {
         return Vec::new();
+    }
+    if world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+        return super::ground::on_its_side(scene_probe, n, number).into_iter().collect();
     }
     let turned = vector(if pose.up.dot(n) < -0.5 { -pose.up } else { n });
     let span = scene_probe.input.scene.camera_span;

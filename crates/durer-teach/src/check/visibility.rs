@@ -17,7 +17,7 @@ pub(super) enum Visibility {
     TurnedAway,
     /// The object is outside the picture.
     Outside,
-    /// The object is unbounded or empty, and no probe hit it.
+    /// The object is unbounded, empty or seen edge-on, and no probe hit it.
     Unknown,
 }
 
@@ -46,17 +46,23 @@ fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
         return Visibility::Unknown;
     }
     let mut sight = Visibility::Outside;
-    for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
+    for (point, ray) in points.iter().flat_map(|&point| rays_to(grid, point).into_iter().map(move |ray| (point, ray))) {
         let seen = past_hidden_backs(&grid.input, ray);
+        let to_point = (point - ray.origin).dot(ray.dir) / ray.dir.length_squared();
         match grid.world().closest(&seen, &mut ()) {
             Some(hit) if hit.object == number => return Visibility::Visible,
             _ if is_first(&grid.input, &ray, number) => return Visibility::TurnedAway,
-            Some(hit) => sight = Visibility::Hidden(hit.object),
-            None => {}
+            Some(hit) if hit.t < to_point * (1.0 - BEHIND) => sight = Visibility::Hidden(hit.object),
+            // The object is seen edge-on, so the ray passes it and hits something behind it.
+            Some(_) if sight == Visibility::Outside => sight = Visibility::Unknown,
+            Some(_) | None => {}
         }
     }
     sight
 }
+
+/// Fraction of the distance to a point by which a hit must be nearer to hide the point.
+const BEHIND: f32 = 1e-3;
 
 /// Returns true if a ray hits an object first, on its visible or on its hidden side.
 fn is_first(input: &CheckInput, ray: &Ray, number: u32) -> bool {

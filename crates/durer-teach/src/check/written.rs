@@ -11,7 +11,10 @@ const REACH: usize = 4096;
 /// components of a colour.
 pub(super) fn place_of_color(scene_probe: &SceneProbe, block: Span, color: Vec3) -> Option<Span> {
     let numbers = numbers(scene_probe, block);
-    let found = numbers.windows(3).find(|three| three.iter().zip(color.to_array()).all(|(own, part)| own.1 == part))?;
+    // Readers can split a colour into a strength and a colour, whose product is rounded.
+    let fits = |own: f32, part: f32| (own - part).abs() <= 1e-5 * part.abs();
+    let is_it = |three: &&[(Span, f32)]| three.iter().zip(color.to_array()).all(|(own, part)| fits(own.1, part));
+    let found = numbers.windows(3).find(is_it)?;
     Some(Span { end: found[2].0.end, ..found[0].0 })
 }
 

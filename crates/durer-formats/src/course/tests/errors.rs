@@ -264,7 +264,7 @@ fn transforms() {
         in_group(
             &format!("Transform {{ {scale} {ball} }}"),
             &format!(
-                "2:13 error: a scale factor of 0 flattens space and has no inverse [{scale}] (use a factor of 1 along \
+                "2:13 error: a scale factor of 0 flattens space: the transform has no inverse [{scale}] (use a factor of 1 along \
                  axes that keep their size)"
             ),
         );
@@ -288,7 +288,7 @@ fn transforms() {
     );
     one_of_nodes(
         "Scene { Node { Transform { scale 1 0 1 } } }",
-        "1:28 error: a scale factor of 0 flattens space and has no inverse [scale 1 0 1] (use a factor of 1 along \
+        "1:28 error: a scale factor of 0 flattens space: the transform has no inverse [scale 1 0 1] (use a factor of 1 along \
          axes that keep their size)",
     );
     // A scale by a small factor is not a scale by 0.

@@ -51,7 +51,7 @@ fn errors_have_place_and_suggestion() {
         ("Translate 1 2", "scene.pbrt:1:1 error `Translate` needs 3 numbers, found 2"),
         ("Scale 0 1 1", "error this transform flattens space"),
         ("Rotate 30 0 0 0", "error the axis of a rotation must not be 0 0 0"),
-        ("LookAt 0 0 0 0 0 0 0 1 0", "error the eye and the target of `LookAt` must differ"),
+        ("LookAt 0 0 0 0 0 0 0 1 0", "error the eye and the target of `LookAt` are equal"),
         ("Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", "error this matrix is not affine"),
         ("WorldBegin AttributeEnd", "error `AttributeEnd` without a scope to close"),
         (

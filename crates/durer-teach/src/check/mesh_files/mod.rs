@@ -144,6 +144,8 @@ impl MeshFile<'_> {
     pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
         match self.face(grid, triangle) {
+            // The file of a model does not name itself.
+            Some(span) if span.file == self.name.span.file => diagnostic.at(span).label("the first of them"),
             Some(span) => {
                 diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is used here")
             }
