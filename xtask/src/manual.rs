@@ -183,7 +183,12 @@ fn grammar() -> String {
 
 #[test]
 fn pages_match_the_code() {
+    // With this variable, the test writes the pages, which saves building the command as well.
+    let writes = std::env::var_os("DURER_WRITE_PAGES").is_some();
     for (path, text) in pages() {
+        if writes {
+            std::fs::write(&path, &text).unwrap();
+        }
         let written = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(written == text, "{} is out of date: run `cargo xtask manual`", path.display());
     }
