@@ -61,6 +61,11 @@ fn report_more_rows(bytes: &[u8], header: &Header, (rows, declared): (usize, usi
         .map(|(at, _)| at)
         .collect();
     let Some(first) = more.first() else { return false };
+    // The rows that follow must be more than the header declares in all.
+    let declared_rows = header.elements.iter().fold(0u64, |sum, element| sum.saturating_add(element.rows));
+    if lines(bytes, header.body).count() as u64 != declared_rows.saturating_add(more.len() as u64) {
+        return false;
+    }
     let message = format!(
         "the header declares {}, but {} of {} {}",
         count_text(rows, "row of `vertex`", "rows of `vertex`"),

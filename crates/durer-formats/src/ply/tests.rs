@@ -156,7 +156,7 @@ fn wrong_rows() {
         ("3 0 1 2", "3 0 -1 2", "13:5+2 Error: vertex -1 does not exist: the file has only the vertices 0 to 2".into()),
         ("3 0 1 2", "3 0 1.5 2", "13:5+3 Error: expected a whole number, found `1.5`".into()),
         ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 vertices, found 2".into()),
-        ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have -1 values".into()),
+        ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have a negative number of values: -1".into()),
         (
             "3 0 1 2",
             "200 0 1 2",
