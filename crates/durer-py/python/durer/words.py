@@ -1089,6 +1089,8 @@ class PrincipledMaterial(Material):
 
     subsurface_scatter_anisotropy: number, more than -1, less than 1; default 0. Mean cosine of the subsurface scattering angle: -1 is backward, 0 isotropic, 1 forward.
 
+    subsurface_through: three numbers. With `walls thin`: colour of the light that passes through the sheet, from 0 to 1. `subsurfaceColor` is then the colour of the light that the sheet reflects, and `subsurfaceScatterAnisotropy` has no effect.
+
     coat_weight: number, from 0 to 1; default 0. Strength of the clear coat, from 0 to 1.
 
     coat_weight_texture: path. Texture that multiplies `coatWeight`.
@@ -1145,6 +1147,8 @@ class PrincipledMaterial(Material):
 
     bump_height: number; default 0.01. Height difference between white and black in the bump map, in world units; negative if white is deeper.
 
+    bump_gradient: `smooth`, `exact`; default smooth. Gradient of the bump map. `smooth`: differences over one texel. `exact`: the derivative of the interpolated heights, which jumps at the centres of texels, as in Mitsuba; a map with `nearest` texels is then flat.
+
     normal_green: `v`, `cross`; default v. Direction of green in the normal map. `v`: along increasing v. `cross`: along the cross product of the normal and the direction of increasing u, which transforms of the texture do not turn, as in Mitsuba.
 
     normal_bending: `on`, `off`, `turned`; default on. `on`: bends interpolated and mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba. `turned`: like `off`, but first turns mapped normals that face away half around the interpolated normal, as Mitsuba's `flip_invalid_normals` does.
@@ -1152,6 +1156,8 @@ class PrincipledMaterial(Material):
     normal_backs: `turned`, `mirrored`; default turned. `turned`: the back of the surface has the bumps of the front, seen from behind. `mirrored`: it has the mapped normals of the front, mirrored at the surface, as with Mitsuba's `twosided` around a map.
 
     normal_shadowing: `on`, `off`; default off. `on`: points with mapped normals reflect less light from grazing directions, as facets hide each other, so that their shading fades before the light sets. Mitsuba does so.
+
+    smooth_shadows: `on`, `off`; default on. `on`: shadow rays from a smooth mesh start on the curved surface that its normals imply, so that triangles do not show where the light becomes grazing. `off`: they start on the triangle, as in Mitsuba and pbrt.
 
     opacity: number, from 0 to 1; default 1. Fraction of the surface that is present, from 0 to 1; the remaining light passes through unchanged.
 
@@ -1214,6 +1220,7 @@ class PrincipledMaterial(Material):
         subsurface_radius: Optional[float] = None,
         subsurface_radius_scale: Optional[npt.ArrayLike] = None,
         subsurface_scatter_anisotropy: Optional[float] = None,
+        subsurface_through: Optional[npt.ArrayLike] = None,
         coat_weight: Optional[float] = None,
         coat_weight_texture: Optional[str] = None,
         coat_color: Optional[npt.ArrayLike] = None,
@@ -1242,10 +1249,12 @@ class PrincipledMaterial(Material):
         normal_texture: Optional[str] = None,
         bump_texture: Optional[str] = None,
         bump_height: Optional[float] = None,
+        bump_gradient: Optional[Literal["smooth", "exact"]] = None,
         normal_green: Optional[Literal["v", "cross"]] = None,
         normal_bending: Optional[Literal["on", "off", "turned"]] = None,
         normal_backs: Optional[Literal["turned", "mirrored"]] = None,
         normal_shadowing: Optional[Literal["on", "off"]] = None,
+        smooth_shadows: Optional[Literal["on", "off"]] = None,
         opacity: Optional[float] = None,
         opacity_texture: Optional[str] = None,
         opacity_cutoff: Optional[float] = None,
@@ -1300,6 +1309,7 @@ class PrincipledMaterial(Material):
             ("subsurfaceRadius", subsurface_radius),
             ("subsurfaceRadiusScale", subsurface_radius_scale),
             ("subsurfaceScatterAnisotropy", subsurface_scatter_anisotropy),
+            ("subsurfaceThrough", subsurface_through),
             ("coatWeight", coat_weight),
             ("coatWeightTexture", coat_weight_texture),
             ("coatColor", coat_color),
@@ -1328,10 +1338,12 @@ class PrincipledMaterial(Material):
             ("normalTexture", normal_texture),
             ("bumpTexture", bump_texture),
             ("bumpHeight", bump_height),
+            ("bumpGradient", bump_gradient),
             ("normalGreen", normal_green),
             ("normalBending", normal_bending),
             ("normalBacks", normal_backs),
             ("normalShadowing", normal_shadowing),
+            ("smoothShadows", smooth_shadows),
             ("opacity", opacity),
             ("opacityTexture", opacity_texture),
             ("opacityCutoff", opacity_cutoff),
