@@ -23,25 +23,34 @@ use std::sync::Arc;
 /// of these formats is assumed to be in the scene language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     #[cfg(feature = "gltf")]
-    super::gltf::FORMAT,
+    here(super::gltf::FORMAT),
     #[cfg(feature = "pbrt")]
-    super::pbrt::FORMAT,
+    here(super::pbrt::FORMAT),
     #[cfg(feature = "mitsuba")]
-    super::mitsuba::FORMAT,
+    here(super::mitsuba::FORMAT),
     #[cfg(feature = "collada")]
-    super::collada::FORMAT,
+    here(super::collada::FORMAT),
     // A USD package is also a ZIP archive, so its extension decides.
     #[cfg(feature = "usd")]
-    super::usd::FORMAT,
+    here(super::usd::FORMAT),
     #[cfg(feature = "threemf")]
-    super::threemf::FORMAT,
+    here(super::threemf::FORMAT),
     #[cfg(feature = "radiance")]
-    super::radiance::FORMAT,
+    here(super::radiance::FORMAT),
     single_mesh_format(&ply::FORMAT),
     obj::scene::FORMAT,
     single_mesh_format(&stl::FORMAT),
     single_mesh_format(&off::FORMAT),
 ];
+
+/// Returns a format as it is available on the target. The page in the browser does not convert
+/// scenes, and its library is smaller without the writers.
+const fn here(format: SceneFormat) -> SceneFormat {
+    match cfg!(target_arch = "wasm32") {
+        true => SceneFormat { write: None, ..format },
+        false => format,
+    }
+}
 
 /// Returns the scene format for files that contain a single mesh.
 const fn single_mesh_format(format: &MeshFormat) -> SceneFormat {

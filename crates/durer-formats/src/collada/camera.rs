@@ -1,23 +1,10 @@
 //! Cameras.
 
 use super::document::Element;
+use super::parts::CameraData;
 use super::reader::Reader;
-use durer_diag::{Diagnostic, Span, did_you_mean};
-use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
-use durer_scene::math::fp;
-use glam::{DAffine3, DVec3};
-
-/// Camera that a node places.
-pub(super) struct CameraData {
-    names: [String; 3],
-    at: Span,
-    to_world: DAffine3,
-    is_orthographic: bool,
-    /// Half of the width and of the height of the view at distance 1, or of an orthographic view;
-    /// at least one is there.
-    half: [Option<f64>; 2],
-    aspect: Option<f64>,
-}
+use durer_diag::{Diagnostic, did_you_mean};
+use glam::DAffine3;
 
 impl<'r> Reader<'r> {
     /// Remembers a camera.
@@ -78,33 +65,5 @@ impl<'r> Reader<'r> {
         };
         let Some(chosen) = chosen else { return };
         (self.scene.camera, self.scene.camera_span) = (Some(chosen.camera(defaults.aspect)), chosen.at);
-    }
-}
-
-impl CameraData {
-    /// Converts the camera for a picture with a ratio of width to height.
-    fn camera(&self, aspect: Option<f32>) -> Camera {
-        let own = match self.half {
-            [Some(x), Some(y)] => Some(x / y),
-            _ => self.aspect,
-        };
-        let aspect = aspect.map(f64::from).or(own).unwrap_or(1.0);
-        // Angles and sizes are measured across the larger side of the picture. The height counts if
-        // both are there.
-        let larger = match self.half {
-            [_, Some(y)] => y * aspect.max(1.0),
-            [Some(x), None] => x * (1.0 / aspect).max(1.0),
-            [None, None] => 1.0,
-        };
-        let map = self.to_world;
-        let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
-        let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
-        let center = map.translation.as_vec3();
-        if self.is_orthographic {
-            let size = (2.0 * larger * map.transform_vector3(DVec3::X).length()) as f32;
-            return OrthographicCamera { center, direction, up, size, ..OrthographicCamera::default() }.into();
-        }
-        let angle = (2.0 * fp::atan_f64(larger)).to_degrees() as f32;
-        PerspectiveCamera { center, direction, up, angle: angle.min(179.9) }.into()
     }
 }

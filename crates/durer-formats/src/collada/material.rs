@@ -1,7 +1,7 @@
 //! Materials of the common profile.
 
 use super::document::Element;
-use super::mesh::Part;
+use super::parts::Part;
 use super::reader::Reader;
 use super::shader::{Effect, Value, linear};
 use durer_diag::Span;

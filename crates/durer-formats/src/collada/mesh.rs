@@ -1,9 +1,9 @@
 //! Meshes: lists of triangles, polygons and strips, whose corners have an index for each input.
 
 use super::document::Element;
+use super::parts::{Part, Source};
 use super::reader::Reader;
 use super::skin::Skin;
-use super::source::Source;
 use crate::polygon::Triangulator;
 use durer_diag::Span;
 use durer_scene::math::{Vec2, Vec3};
@@ -15,16 +15,6 @@ use std::sync::Arc;
 
 /// Largest offset of an input.
 const MAX_OFFSET: u32 = 255;
-
-/// Triangles that share a material.
-pub(super) struct Part {
-    /// Name that a node binds to a material.
-    pub symbol: Option<String>,
-    pub data: Arc<MeshData>,
-    /// Numbers of the first two sets of texture coordinates.
-    pub sets: Vec<u32>,
-    pub at: Span,
-}
 
 /// Inputs of the corners of a primitive list.
 struct Inputs {

@@ -9,6 +9,7 @@ mod document;
 mod light;
 mod material;
 mod mesh;
+mod parts;
 mod reader;
 mod shader;
 mod skin;

@@ -1,9 +1,7 @@
 //! Conversion of the nodes of a visual scene to objects, lights and cameras.
 
-use super::camera::CameraData;
 use super::document::{Element, by_id};
-use super::mesh::Part;
-use super::source::Source;
+use super::parts::{CameraData, Part, Source};
 use super::transform::local_transform;
 use crate::growth::ResourceLimits;
 use crate::model::ReadInput;

@@ -1,34 +1,10 @@
 //! Lists of numbers, and the accessors that divide them into vectors.
 
 use super::document::Element;
+use super::parts::Source;
 use super::reader::Reader;
 use durer_diag::Diagnostic;
 use std::rc::Rc;
-
-/// List of vectors.
-pub(super) struct Source {
-    values: Vec<f32>,
-    stride: usize,
-    pub count: usize,
-}
-
-impl Source {
-    /// Returns a vector, which has at least as many components as the stride states.
-    pub fn get(&self, index: usize) -> &[f32] {
-        self.values.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[])
-    }
-
-    /// Returns the first components of a vector; those that are missing or not finite are 0.
-    pub fn vector<const N: usize>(&self, index: usize) -> [f32; N] {
-        let own = self.get(index);
-        std::array::from_fn(|k| own.get(k).copied().filter(|x| x.is_finite()).unwrap_or(0.0))
-    }
-
-    /// Number of components of each vector.
-    pub fn width(&self) -> usize {
-        self.stride
-    }
-}
 
 impl<'r> Reader<'r> {
     /// Returns the element that an attribute refers to, such as `source="#positions"`. Reports if

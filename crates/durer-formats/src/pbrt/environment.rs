@@ -51,8 +51,8 @@ impl Reader<'_> {
         // Double the number of rows for an equirectangular source. Fine detail near the poles of
         // the source may be far from the poles of the merged map, where fewer texels are available
         // for it.
-        // The equal-area map uses the nearest texel, so small ones get many rows to keep the borders
-        // between texels.
+        // The equal-area map uses the nearest texel, so small ones get many rows, which keep the
+        // borders between texels.
         let finer = |source: &Source| match source.map {
             EnvironmentMapping::Equirectangular => 2 * source.image.height,
             EnvironmentMapping::EqualArea => source.image.height.max((8 * source.image.height).min(512)),

@@ -73,7 +73,7 @@ impl World {
     ///
     /// A glass box stands on a floor, for example. A ray that leaves the glass would start behind
     /// the floor, because secondary rays start at a small distance from the surface. Which of both
-    /// is in front cannot be told, and the floor ends the ray in any case.
+    /// is in front is unknown, and the floor ends the ray in any case.
     pub(crate) fn contact(&self, at: &SurfaceInteraction) -> Option<Hit> {
         if self.is_opaque(at.material) || matches!(self.accel, Accel::Course(_)) {
             return None;

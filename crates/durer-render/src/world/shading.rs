@@ -217,8 +217,8 @@ impl World {
         }
     }
 
-    /// Returns true if shadow rays from smooth meshes of a material start on the curved surface that
-    /// the normals imply.
+    /// Returns true if shadow rays from smooth meshes of a material start on the curved surface
+    /// that the normals imply.
     pub fn has_smooth_shadows(&self, material: u32) -> bool {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => {

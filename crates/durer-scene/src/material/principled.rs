@@ -271,9 +271,9 @@ described! {
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
         bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
-        /// Gradient of the bump map. `smooth`: differences over one texel. `exact`: the derivative of
-        /// the interpolated heights, which jumps at the centres of texels, as in Mitsuba; a map with
-        /// `nearest` texels is then flat.
+        /// Gradient of the bump map. `smooth`: differences over one texel. `exact`: the derivative
+        /// of the interpolated heights, which jumps at the centres of texels, as in Mitsuba; a map
+        /// with `nearest` texels is then flat.
         bump_gradient: BumpGradient = BumpGradient::Smooth, optional, Constraint::Any, ["bumpGradient" in set::DURER];
         /// Direction of green in the normal map. `v`: along increasing v. `cross`: along the cross
         /// product of the normal and the direction of increasing u, which transforms of the texture
