@@ -4,6 +4,7 @@ use super::document::Element;
 use super::parts::CameraData;
 use super::reader::Reader;
 use durer_diag::{Diagnostic, did_you_mean};
+use durer_scene::math::fp;
 use glam::DAffine3;
 
 impl<'r> Reader<'r> {

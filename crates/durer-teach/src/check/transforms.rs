@@ -167,7 +167,7 @@ fn scale_before_move(ops: &[MatrixOp]) -> Option<(f32, Vec3, f32)> {
     let MatrixOp::Translate(by) = ops[at] else { return None };
     let scales: Vec<f32> = ops[..at].iter().filter_map(uniform_scale).collect();
     let factor: f32 = scales.iter().product();
-    let is_far = factor > MIN_FACTOR || factor < 1.0 / MIN_FACTOR;
+    let is_far = !(1.0 / MIN_FACTOR..=MIN_FACTOR).contains(&factor);
     scales.last().filter(|_| is_far && by != Vec3::ZERO).map(|scale| (*scale, by, factor))
 }
 
