@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// itself: for the new picture and its 8-bit data, both raw and encoded.
 pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
-/// Largest number of texels of a derived picture in single precision.
+/// Largest number of texels of a picture that is derived in single precision.
 const MOST_REFINED: u64 = 1 << 22;
 
 /// Reader for the pictures that a scene names, which also converts pictures and reports errors.
@@ -98,9 +98,7 @@ impl Pictures<'_> {
         let mut image = self.decoded(path, at, image::decode_linear)?;
         image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
         // Pictures with data other than colours stay linear.
-        let (bytes, kind) = stored(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
-        let path = format!("{path}#{}.{kind}", &Digest::of(&bytes).to_string()[..12]);
-        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
+        derived(picture, image, if is_color { Transfer::Srgb } else { Transfer::Linear })
     }
 
     /// Returns the mean of all values in a picture.
@@ -135,7 +133,7 @@ impl Pictures<'_> {
         finer: u32,
         change: impl Fn(Color) -> Color,
     ) -> Option<TextureImage> {
-        let (path, image) = self.source(picture, at, decode)?;
+        let image = self.source(picture, at, decode)?;
         let texels = u64::from(image.width) * u64::from(image.height);
         let finer = (1..=finer).rev().find(|n| texels * u64::from(n * n) <= MOST_REFINED).unwrap_or(1);
         if finer == 1 || picture.mapping.nearest {
@@ -157,17 +155,15 @@ impl Pictures<'_> {
             let row = |j: i64| texel(i, j).lerp(texel(i + 1, j), a);
             pixels.push(change(row(j).lerp(row(j + 1), b)).clamp(Color::ZERO, Color::ONE));
         }
-        let bytes = as_pfm(Image::from_pixels(width, height, pixels).ok()?)?;
-        let path = format!("{path}#{}.pfm", &Digest::of(&bytes).to_string()[..12]);
-        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
+        derived(picture, Image::from_pixels(width, height, pixels).ok()?, Transfer::Linear)
     }
 
     /// Decodes a picture.
-    fn source<'p>(&self, picture: &'p TextureImage, at: Span, decode: fn(u8) -> f32) -> Option<(&'p String, Image)> {
-        Some(match &picture.bytes {
-            PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
-            PictureBytes::Memory(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
-        })
+    fn source(&self, picture: &TextureImage, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
+        match &picture.bytes {
+            PictureBytes::File(path) => self.decoded(path, at, decode),
+            PictureBytes::Memory(path, bytes) => self.read(path, bytes, decode).ok(),
+        }
     }
 
     /// Creates a linear picture by applying `change` to each texel of another picture. `decode` is
@@ -179,12 +175,10 @@ impl Pictures<'_> {
         decode: fn(u8) -> f32,
         change: impl Fn(Color) -> Color,
     ) -> Option<TextureImage> {
-        let (path, image) = self.source(picture, at, decode)?;
+        let image = self.source(picture, at, decode)?;
         let texel = |p: &Color| change(*p).clamp(Color::ZERO, Color::ONE);
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
-        let (bytes, kind) = stored(image, Transfer::Linear)?;
-        let path = format!("{path}#{}.{kind}", &Digest::of(&bytes).to_string()[..12]);
-        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
+        derived(picture, image, Transfer::Linear)
     }
 
     /// Combines two pictures that have the same mapping, texel by texel. Both can be the same
@@ -199,11 +193,7 @@ impl Pictures<'_> {
         if one.mapping != other.mapping {
             return None;
         }
-        let image = |picture: &TextureImage| match &picture.bytes {
-            PictureBytes::File(path) => self.image(path, at),
-            PictureBytes::Memory(path, bytes) => self.read(path, bytes, image::decode_srgb).ok(),
-        };
-        let (a, b) = (image(one)?, image(other)?);
+        let (a, b) = (self.source(one, at, image::decode_srgb)?, self.source(other, at, image::decode_srgb)?);
         let (width, height) = (a.width.max(b.width), a.height.max(b.height));
         // Use the nearest texel of the smaller picture.
         let place = |i: u32, of: u32, count: u32| (u64::from(i) * u64::from(count) / u64::from(of)) as u32;
@@ -217,9 +207,7 @@ impl Pictures<'_> {
         let most = pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
         let most = if most.is_finite() { most } else { 1.0 };
         pixels.iter_mut().for_each(|p| *p /= most);
-        let (bytes, kind) = stored(Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?;
-        let path = format!("{}#{}.{kind}", one.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
-        Some((TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: one.mapping }, most))
+        Some((derived(one, Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?, most))
     }
 
     fn report_error(&self, name: &str, at: Span, error: &ImageError) {
@@ -263,13 +251,17 @@ pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)
     Some((PictureBytes::Memory(name, bytes), most))
 }
 
-/// Encodes a derived picture and returns it with its extension. Eight bits would round the values,
-/// so only large pictures are stored with eight bits and the given transfer function.
-fn stored(image: Image, transfer: Transfer) -> Option<(Arc<[u8]>, &'static str)> {
-    match image.pixels.len() as u64 <= MOST_REFINED {
-        true => Some((as_pfm(image)?, "pfm")),
-        false => Some((as_png(image, transfer)?, "png")),
-    }
+/// Returns a picture that was derived from another one, with the same mapping. Eight bits would
+/// round the values, so only large pictures are stored with eight bits and the given transfer
+/// function, unless the other picture has single precision.
+fn derived(from: &TextureImage, image: Image, transfer: Transfer) -> Option<TextureImage> {
+    let is_float = matches!(&from.bytes, PictureBytes::Memory(path, _) if path.ends_with(".pfm"));
+    let (bytes, kind) = match is_float || image.pixels.len() as u64 <= MOST_REFINED {
+        true => (as_pfm(image)?, "pfm"),
+        false => (as_png(image, transfer)?, "png"),
+    };
+    let path = format!("{}#{}.{kind}", from.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
+    Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: from.mapping })
 }
 
 /// Encodes a picture as an 8-bit PNG.

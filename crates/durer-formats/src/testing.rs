@@ -107,6 +107,21 @@ pub(super) fn write_in(folder: &Path, name: &str, scene: &Scene) -> Vec<String> 
     diagnostics.iter().map(|found| found.message.clone()).collect()
 }
 
+/// Asserts that the writer of a format reports each kind of loss once, even if several parts of a
+/// scene have it. `name` is that of a file in this format.
+pub(super) fn assert_losses_are_reported_once(name: &str) {
+    let text = "FisheyeCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 }
+        Materials { numMaterials 1 PrincipledMaterial { fuzzWeight 1 } }
+        Group { numObjects 2 MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Plane { normal 0 1 0 offset 1 } }";
+    let folder = folder(&[]);
+    let (before, messages) = read_in(folder.path(), "a.txt", text);
+    let messages = write_in(folder.path(), name, &before.unwrap_or_else(|| panic!("{messages:?}")));
+    assert_eq!(messages.len(), 3, "{messages:?}");
+    for part in ["fuzz", "infinite planes", "camera of this kind"] {
+        assert_eq!(messages.iter().filter(|message| message.contains(part)).count(), 1, "{part} {messages:?}");
+    }
+}
+
 /// Asserts that two values have the same parts, and numbers that differ by at most `tolerance`.
 pub(super) fn assert_near(what: &str, before: &impl Serialize, after: &impl Serialize, tolerance: f64) {
     fn differs(a: &Value, b: &Value, tolerance: f64) -> bool {

@@ -11,6 +11,9 @@ use durer_scene::scene::{Material, Spanned};
 use durer_scene::texture::Channel;
 use std::collections::HashMap;
 
+/// Weights of red, green and blue in `transparent`, as the specification states them.
+const LUMINANCE: Vec3 = Vec3::new(0.212_671, 0.715_160, 0.072_169);
+
 impl<'r> Reader<'r> {
     /// Returns the number of the material that an instance binds to a part of its mesh.
     pub fn bound_material(&mut self, instance: &'r Element<'r>, part: &Part) -> Option<u32> {
@@ -168,9 +171,9 @@ impl<'r> Reader<'r> {
         }
         let share = reflectivity.unwrap_or(1.0).clamp(0.0, 1.0);
         let Some(color) = self.value(effect, shader, "reflective") else { return };
-        let color = match color {
-            Value::Color(color, _) => share * linear(color, self.is_linear),
-            Value::Texture(_) => Vec3::ZERO,
+        let (color, is_texture) = match color {
+            Value::Color(color, _) => (share * linear(color, self.is_linear), false),
+            Value::Texture(_) => (Vec3::ZERO, true),
         };
         let is_black = m.base_color.max_element() < 0.05 && m.base_color_texture.is_none();
         if color.max_element() >= 0.05 && is_black {
@@ -178,7 +181,7 @@ impl<'r> Reader<'r> {
             (m.base_color, m.base_metalness) = (color.min(Vec3::ONE), 1.0);
             (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
             m.specular_roughness = if m.specular_roughness == 1.0 { 0.0 } else { m.specular_roughness };
-        } else if color != Vec3::ZERO || matches!(self.value(effect, shader, "reflective"), Some(Value::Texture(_))) {
+        } else if color != Vec3::ZERO || is_texture {
             let message = "`reflective` of coloured surfaces has no counterpart: they are no mirrors";
             self.report.unsupported_once(shader.at, message);
         }
@@ -213,7 +216,7 @@ impl<'r> Reader<'r> {
                     Some(Value::Color(color, alpha)) => (color, alpha),
                     _ => (Vec3::ONE, 1.0),
                 };
-                let luminance = color.dot(Vec3::new(0.212_671, 0.715_160, 0.072_169));
+                let luminance = color.dot(LUMINANCE);
                 let share = amount * if is_alpha { alpha } else { luminance };
                 m.opacity = if is_inverted { 1.0 - share } else { share }.clamp(0.0, 1.0);
                 if m.opacity == 0.0 {

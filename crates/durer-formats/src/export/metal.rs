@@ -1,6 +1,7 @@
 //! Metals as complex indices of refraction.
 
 use durer_scene::bsdf::fresnel::conductor;
+use durer_scene::math::Vec3;
 
 /// Largest reflectance at normal incidence for which an index is computed.
 const PERFECT: f32 = 0.999;
@@ -11,7 +12,7 @@ const PERFECT: f32 = 0.999;
 ///
 /// Source: Gulbrandsen, *Artist Friendly Metallic Fresnel*, Journal of Computer Graphics Techniques
 /// 3(4), 2014, for the range of eta and for k as a function of eta; eta is found by bisection.
-pub(crate) fn index_of_refraction(f0: f32, f82: f32) -> [f32; 2] {
+fn index_of_refraction(f0: f32, f82: f32) -> [f32; 2] {
     let f0 = f0.clamp(1e-4, PERFECT);
     let k_of = |n: f32| ((f0 * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - f0)).max(0.0).sqrt();
     // The reflectance at 82 degrees falls as eta grows.
@@ -23,6 +24,12 @@ pub(crate) fn index_of_refraction(f0: f32, f82: f32) -> [f32; 2] {
     }
     let n = 0.5 * (low + high);
     [n, k_of(n)]
+}
+
+/// Returns [`index_of_refraction`] for red, green and blue: eta, and k.
+pub(crate) fn indices_of_refraction(f0: Vec3, f82: Vec3) -> [Vec3; 2] {
+    let index: [_; 3] = std::array::from_fn(|i| index_of_refraction(f0[i], f82[i]));
+    [0, 1].map(|column| Vec3::from_array(index.map(|pair| pair[column])))
 }
 
 #[cfg(test)]

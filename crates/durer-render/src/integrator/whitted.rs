@@ -248,11 +248,7 @@ impl<'w> Whitted<'w> {
             let point = &mut points[count];
             let mut passed = PassedSurfaces::default();
             let transition = loop {
-                self.world.intersect_into(&segment.ray, hit, &mut point.at);
-                if let Some(contact) = self.world.contact(&point.at) {
-                    hit = contact;
-                    self.world.intersect_into(&segment.ray, hit, &mut point.at);
-                }
+                hit = self.world.intersect_touching(&segment.ray, hit, &mut point.at);
                 match self.transition(&point.at, &segment.media) {
                     Some(MediumTransition { displaced: true, behind, .. }) => {
                         segment.media = behind;

@@ -98,6 +98,16 @@ impl World {
         best
     }
 
+    /// Writes the surface interaction at a hit into `at`, or that at the surface which touches it;
+    /// see [`World::contact`]. Returns the hit that counts.
+    #[inline]
+    pub(crate) fn intersect_touching(&self, ray: &Ray64, hit: Hit, at: &mut SurfaceInteraction) -> Hit {
+        self.intersect_into(ray, hit, at);
+        let Some(contact) = self.contact(at) else { return hit };
+        self.intersect_into(ray, contact, at);
+        contact
+    }
+
     /// Calls `visit` with the indices of all objects that a ray may hit in its interval.
     fn for_each_near(&self, ray: &Ray64, mut visit: impl FnMut(u32)) {
         self.packs.numbers().for_each(&mut visit);

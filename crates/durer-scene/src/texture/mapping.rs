@@ -87,6 +87,15 @@ impl Mapping {
         Vec2::new(x, y)
     }
 
+    /// Gradient with respect to u and v, from the gradient with respect to the position in the
+    /// texture; see [`Mapping::texture_position`].
+    pub(super) fn gradient(&self, of_position: Vec2) -> Vec2 {
+        let [[a, b, _], [c, d, _]] = self.transform;
+        let Vec2 { x, y } = of_position;
+        // The coordinate v points up on the surface, but down in the texture.
+        Vec2::new(a * x + c * y, -(b * x + d * y))
+    }
+
     /// Maps a channel value from [0, 1] to the range of parameter values.
     pub fn map_to_range(&self, x: f32) -> f32 {
         let [low, high] = self.range;

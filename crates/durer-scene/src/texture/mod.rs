@@ -200,9 +200,7 @@ impl Texture {
             after - before
         };
         let (x, y) = (along(Vec2::new(step.x, 0.0)) / step.x, along(Vec2::new(0.0, step.y)) / step.y);
-        let [[a, b, _], [c, d, _]] = mapping.transform;
-        // The coordinate v points up on the surface, but down in the texture.
-        Vec2::new(a * x + c * y, -(b * x + d * y))
+        mapping.gradient(Vec2::new(x, y))
     }
 
     /// Version of [`Texture::slope`] that returns the derivative of the interpolated values. It is
@@ -220,8 +218,7 @@ impl Texture {
             .map(|[i, j]| self.texel_at(mapping, (cell + Vec2::new(i, j) + 0.5) / size)[0]);
         let x = size.x * ((1.0 - b) * (q - p) + b * (s - r));
         let y = size.y * ((1.0 - a) * (r - p) + a * (s - q));
-        let [[c, d, _], [e, f, _]] = mapping.transform;
-        Vec2::new(c * x + e * y, -(d * x + f * y))
+        mapping.gradient(Vec2::new(x, y))
     }
 
     /// Colour and opacity at a position in the texture, before the alpha cutoff. The position is

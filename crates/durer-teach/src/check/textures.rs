@@ -136,8 +136,8 @@ fn uniform_parameter(scene_probe: &SceneProbe, number: usize, own: &Principled) 
     finding.map(Finding::from)
 }
 
-/// Reports normal maps whose red, green and blue are equal everywhere, which are height maps, and
-/// those whose normals point into the surface, which are pictures of colours.
+/// Reports normal maps that are height maps, because red, green and blue are equal everywhere, or
+/// pictures of colours, because the normals point into the surface.
 pub(super) fn normal_maps(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let is_grey = |[r, g, b]: [f32; 3]| (r - g).abs() < GREY && (g - b).abs() < GREY;

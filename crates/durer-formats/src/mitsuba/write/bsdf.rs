@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::{PROGRAM, Writer};
-use crate::export::metal::index_of_refraction;
+use crate::export::metal::indices_of_refraction;
 use crate::export::picture::PictureFile;
 use crate::export::surface::{MetalIndex, Opaque, Paint, Rough, Surface};
 use crate::mitsuba::rough::Boundary;
@@ -145,9 +145,8 @@ impl Writer<'_> {
         if (f0 - f82).abs().max_element() < 1e-3 {
             return metal.text("material", "none").rgb("specular_reflectance", f0.min(Vec3::ONE));
         }
-        let index = std::array::from_fn::<_, 3, _>(|i| index_of_refraction(f0[i], f82[i]));
-        let column = |k: usize| Vec3::from_array(index.map(|pair| pair[k]));
-        metal.rgb("eta", column(0)).rgb("k", column(1))
+        let [eta, k] = indices_of_refraction(f0, f82);
+        metal.rgb("eta", eta).rgb("k", k)
     }
 
     /// Adds the distribution of the facets. `can_stretch` is true if alpha can differ along u and v

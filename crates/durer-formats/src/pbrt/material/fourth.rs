@@ -10,7 +10,7 @@ use super::super::named;
 use super::super::params::{Kind, Params, Values};
 use super::super::state::Reader;
 use super::{matte, set_subsurface};
-use crate::export::metal::index_of_refraction;
+use crate::export::metal::indices_of_refraction;
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::{self, conductor_colors};
@@ -20,7 +20,6 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Surroundings, Switch, Walls};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::spectrum::SpectrumSource;
-use std::array::from_fn;
 
 const MATERIALS: [&str; 12] = [
     "diffuse",
@@ -259,7 +258,7 @@ impl Reader<'_> {
                     }
                 };
                 // With eta = 1, this k gives the desired reflectance at normal incidence.
-                let k = share.map(|r| 2.0 * (r.clamp(0.0, 0.9999) / (1.0 - r.clamp(0.0, 0.9999))).sqrt());
+                let k = share.clamp(Vec3::ZERO, Vec3::splat(0.9999)).map(|r| 2.0 * (r / (1.0 - r)).sqrt());
                 [Vec3::splat(1.0 / outside), k / outside]
             }
             None => {
@@ -271,8 +270,7 @@ impl Reader<'_> {
                     // Reflectances average over the spectrum; indices of refraction do not.
                     _ => {
                         let [f0, f82] = conductor_colors(&eta, &k, outside);
-                        let index: [_; 3] = from_fn(|i| index_of_refraction(f0[i], f82[i]));
-                        [0, 1].map(|column| Vec3::from_array(index.map(|pair| pair[column])))
+                        indices_of_refraction(f0, f82)
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::text::Directive;
 use super::{PROGRAM, Writer};
-use crate::export::metal::index_of_refraction;
+use crate::export::metal::indices_of_refraction;
 use crate::export::picture::PictureFile;
 use crate::export::surface::{MetalIndex, Opaque, Paint, Rough, Surface};
 use durer_scene::bsdf::fresnel;
@@ -108,9 +108,8 @@ impl Writer<'_> {
                         self.paint(metal, "reflectance", &paint, "color", |color| color)
                     }
                     (None, None) => {
-                        let index = std::array::from_fn::<_, 3, _>(|i| index_of_refraction(f0[i], f82[i]));
-                        let column = |k: usize| Vec3::from_array(index.map(|pair| pair[k]));
-                        metal.rgb("eta", column(0)).rgb("k", column(1))
+                        let [eta, k] = indices_of_refraction(*f0, *f82);
+                        metal.rgb("eta", eta).rgb("k", k)
                     }
                 }
             }

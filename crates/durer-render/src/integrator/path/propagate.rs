@@ -107,13 +107,9 @@ impl Path<'_> {
                     }
                     state.throughput = before * transmittance;
                 }
-                let Some(mut hit) = hit else { return (PathEvent::Escaped, transmittance) };
+                let Some(hit) = hit else { return (PathEvent::Escaped, transmittance) };
                 traversed = length;
-                self.world.intersect_into(ray, hit, at);
-                if let Some(contact) = self.world.contact(at) {
-                    hit = contact;
-                    self.world.intersect_into(ray, hit, at);
-                }
+                let hit = self.world.intersect_touching(ray, hit, at);
                 if let (Some(cone), Some(before)) = (&self.cone, state.camera_distance) {
                     at.width = cone.width_at(before + length);
                 }
