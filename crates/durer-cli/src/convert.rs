@@ -17,7 +17,7 @@ use durer::format::scene::Written;
 use durer::format::{json, mesh_format_for, scene_format_for, scene_writer_for};
 use durer::image::Destination;
 use durer::load;
-use durer::scene::{DefaultLighting, RenderDefaults, Scene};
+use durer::scene::{RenderDefaults, Scene};
 use std::path::{Path, PathBuf};
 
 /// Convert a scene to a dialect, JSON, glTF, pbrt, Mitsuba or USD, or its meshes to PLY, OBJ or STL
@@ -49,9 +49,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_json = name.to_lowercase().ends_with(".json");
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
-        // The ground plane of studio lights is not part of the model.
-        options.scene_defaults.lighting = options.scene_defaults.lighting.and(Some(DefaultLighting::None));
-        options.scene_defaults.own_light = true;
+        options.scene_defaults.meshes_only();
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());

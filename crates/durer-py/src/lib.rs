@@ -1,6 +1,7 @@
 //! Native part of `import durer`. It takes arrays that have been checked, and returns arrays and
 //! JSON text. The public interface is in `python/durer`.
 
+mod measure;
 mod pictures;
 mod rays;
 mod surface;
@@ -25,6 +26,8 @@ fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(surface::hit_normals, module)?)?;
     module.add_function(wrap_pyfunction!(surface::secondary_origins, module)?)?;
     module.add_function(wrap_pyfunction!(world::merge, module)?)?;
+    module.add_function(wrap_pyfunction!(world::read_mesh, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::measure, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::compare, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::encode, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::decode, module)?)?;

@@ -2,7 +2,7 @@
 
 use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
-use durer::image::{Image, Layer, Transfer, WriteOptions, format_for};
+use durer::image::{ChannelBits, Display, Image, Layer, Tone, Transfer, WriteOptions, format_for};
 use durer::math::Vec3;
 use durer::report;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray3};
@@ -47,17 +47,34 @@ pub fn compare<'py>(
 /// is true if the values are linear light.
 type NamedPicture<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
+/// Conversion to display values: the exposure as a factor, the tone curve, the transfer function,
+/// and the bits per channel.
+type DisplayValues<'a> = (f32, &'a str, &'a str, u8);
+
+fn display((exposure, tone, transfer, bits): DisplayValues) -> PyResult<Display> {
+    let unknown =
+        |what: &str, names: Vec<&str>| PyValueError::new_err(format!("{what} must be one of {}", names.join(", ")));
+    let tones = || unknown("tone", Tone::ALL.iter().map(|row| row.0).collect());
+    let transfers = || unknown("transfer", Transfer::ALL.iter().map(|t| t.name()).collect());
+    let bits = match bits {
+        8 => ChannelBits::Eight,
+        16 => ChannelBits::Sixteen,
+        _ => return Err(PyValueError::new_err(format!("bits must be 8 or 16, but is {bits}"))),
+    };
+    let transfer = Transfer::from_name(transfer).ok_or_else(transfers)?;
+    Ok(Display { exposure, tone: Tone::from_name(tone).ok_or_else(tones)?, transfer, bits })
+}
+
 /// Encodes an image file. The extension of `name` selects the format.
 #[pyfunction]
 pub fn encode<'py>(
     py: Python<'py>,
     name: &str,
     layers: Vec<NamedPicture<'py>>,
-    transfer: &str,
+    shown: DisplayValues,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let format = format_for(std::path::Path::new(name)).map_err(wrong)?;
-    let known = || format!("transfer must be one of {}", Transfer::ALL.map(Transfer::name).join(", "));
-    let transfer = Transfer::from_name(transfer).ok_or_else(|| PyValueError::new_err(known()))?;
+    let display = display(shown)?;
     let mut all = Vec::with_capacity(layers.len());
     for (name, pixels, coverage, color) in layers {
         let layer = if color { Layer::color(name, image(&pixels)?) } else { Layer::data(name, image(&pixels)?) };
@@ -67,7 +84,7 @@ pub fn encode<'py>(
         });
     }
     let mut bytes = Vec::new();
-    let options = WriteOptions { display: transfer.into(), attributes: &[] };
+    let options = WriteOptions { display, attributes: &[] };
     install(py, None, || format.write(&all, &options, &mut bytes)).map_err(wrong)?;
     Ok(PyBytes::new(py, &bytes))
 }

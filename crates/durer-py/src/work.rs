@@ -18,6 +18,9 @@ use std::time::{Duration, Instant};
 /// Time between two checks for signals, and between two progress reports.
 pub const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
+/// Steps of the progress that [`watched`] reports.
+const PROGRESS_STEPS: u64 = 1000;
+
 /// Entry of the cache of thread pools, with the process id, the requested number of threads, and
 /// the pool.
 type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
@@ -142,4 +145,41 @@ pub fn each<J: Send>(
     });
     result?;
     watch.map_or(Ok(()), |watch| watch.call1(py, (all, all)).map(|_| ()))
+}
+
+/// Runs one piece of work on the threads of a pool. The work receives a flag that is set after
+/// Ctrl-C or an exception in `watch`, and a function that takes its progress from 0 to 1.
+pub fn watched<R: Send>(
+    py: Python,
+    asked: Option<usize>,
+    watch: Option<Py<PyAny>>,
+    work: impl FnOnce(&AtomicBool, &(dyn Fn(f64) + Sync)) -> R + Send,
+) -> PyResult<R> {
+    let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let progress = |share: f64| done.store((share * PROGRESS_STEPS as f64) as usize, Relaxed);
+    let (answer, result) = py.detach(|| {
+        std::thread::scope(|scope| {
+            let (end, wait) = channel::<()>();
+            let (stop, progress) = (&stop, &progress);
+            let thread = scope.spawn(move || {
+                let run = || work(stop, progress);
+                let answer = match pool(asked) {
+                    Some(pool) => pool.install(run),
+                    None => run(),
+                };
+                drop(end);
+                answer
+            });
+            let mut result = Ok(());
+            while wait.recv_timeout(POLL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+                if result.is_ok() {
+                    result = poll(watch.as_ref(), done.load(Relaxed) as u64, PROGRESS_STEPS);
+                    stop.store(result.is_err(), Relaxed);
+                }
+            }
+            (thread.join(), result)
+        })
+    });
+    result?;
+    answer.map_err(|panic| std::panic::resume_unwind(panic))
 }

@@ -12,7 +12,7 @@ use durer::render::{self, RenderOutcome};
 use durer::report;
 use durer::source::SourceError;
 use durer::world::SurfaceInteraction;
-use durer::{LoadedScene, load, load_text};
+use durer::{LoadOptions, LoadedScene, load, load_text};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
@@ -37,8 +37,8 @@ fn failed(error: impl ToString) -> PyErr {
 /// Scene that was read and compiled, with the diagnostics from reading it.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
-    loaded: LoadedScene,
-    world: durer::world::World,
+    pub loaded: LoadedScene,
+    pub world: durer::world::World,
     files: Files,
     read: Diagnostics,
 }
@@ -90,27 +90,17 @@ fn unreadable(error: &SourceError, path: &Path) -> PyErr {
 }
 
 /// Options as pairs of a name and a text.
-type Pairs = Vec<(String, String)>;
+pub type Pairs = Vec<(String, String)>;
 
-fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
+pub fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
     let mut options = RenderOptions::default();
     pairs.iter().try_for_each(|(name, text)| options.set(name, text)).map_err(PyValueError::new_err)?;
     Ok(options)
 }
 
-#[pymethods]
 impl World {
-    /// Reads a scene from a file, or from a text with embedded files as if it were a file.
-    #[new]
-    fn new(
-        py: Python,
-        path: PathBuf,
-        text: Option<Vec<u8>>,
-        given: Vec<(String, Vec<u8>)>,
-        pairs: Pairs,
-    ) -> PyResult<Self> {
-        let mut options = options(&pairs)?.load_options();
-        options.in_memory = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
+    /// Reads and compiles a scene.
+    fn load(py: Python, path: PathBuf, text: Option<Vec<u8>>, mut options: LoadOptions) -> PyResult<Self> {
         install(py, options.threads, || {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
             let loaded = match text {
@@ -129,6 +119,23 @@ impl World {
                 }
             }
         })
+    }
+}
+
+#[pymethods]
+impl World {
+    /// Reads a scene from a file, or from a text with embedded files as if it were a file.
+    #[new]
+    fn new(
+        py: Python,
+        path: PathBuf,
+        text: Option<Vec<u8>>,
+        given: Vec<(String, Vec<u8>)>,
+        pairs: Pairs,
+    ) -> PyResult<Self> {
+        let mut options = options(&pairs)?.load_options();
+        options.in_memory = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
+        World::load(py, path, text, options)
     }
 
     /// Returns the warnings and notes from reading the scene.
@@ -286,6 +293,12 @@ pub struct Part(Arc<render::PartialRender>);
 /// everywhere.
 type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
 
+fn picture(py: Python, layer: Layer) -> Picture {
+    let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+    let coverage = layer.coverage.map(|coverage| coverage.into_pyarray(py));
+    (layer.name, layer.image.width, layer.image.height, values.into_pyarray(py), coverage)
+}
+
 #[pymethods]
 impl Part {
     /// Reads a part from the bytes of a `.part` file.
@@ -342,12 +355,13 @@ impl Part {
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
         let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
-        let picture = |layer: Layer| {
-            let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
-            let coverage = layer.coverage.map(|coverage| coverage.into_pyarray(py));
-            (layer.name, layer.image.width, layer.image.height, values.into_pyarray(py), coverage)
-        };
-        Ok(layers.into_iter().map(picture).collect())
+        Ok(layers.into_iter().map(|layer| picture(py, layer)).collect())
+    }
+
+    /// Denoises the colour image with the built-in denoiser. Returns it like [`Part::pictures`].
+    fn denoised<'py>(&self, py: Python<'py>, world: &World) -> PyResult<Picture<'py>> {
+        let denoised = install(py, None, || self.0.noisy(&world.world, None).map(|noisy| noisy.denoised()));
+        Ok(picture(py, denoised.map_err(failed)?))
     }
 
     /// Returns the names and descriptions of all images other than colour.
@@ -355,6 +369,21 @@ impl Part {
     fn kinds() -> Vec<(&'static str, &'static str)> {
         durer::film::aov::AOVS.iter().map(|aov: &Aov| (aov.name, aov.doc)).collect()
     }
+}
+
+/// Triangles of all meshes in a file: corners of shape (n, 3) and indices of shape (m, 3), both
+/// flattened, and the number of objects that are not meshes.
+type Triangles<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<u32>>, usize);
+
+/// Reads the meshes of a scene or model file, in world space.
+#[pyfunction]
+pub fn read_mesh<'py>(py: Python<'py>, path: PathBuf, pairs: Pairs) -> PyResult<Triangles<'py>> {
+    let mut load_options = options(&pairs)?.load_options();
+    load_options.scene_defaults.meshes_only();
+    let world = World::load(py, path, None, load_options)?;
+    let (mesh, left_out) = install(py, None, || world.world.merged_mesh());
+    let corners: Vec<f32> = mesh.positions.iter().flat_map(|p| p.to_array()).collect();
+    Ok((corners.into_pyarray(py), mesh.triangles.concat().into_pyarray(py), left_out))
 }
 
 /// Merges parts. Each is given by a name for messages and by the bytes of its file.

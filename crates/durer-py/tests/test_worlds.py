@@ -245,7 +245,7 @@ def test_model_conversion_is_reported(tmp_path):
         found = world.render(samples=1).hash
         assert found in done.stdout and found != usual and world.render(samples=1, size=size).hash == found
         assert world.render(samples=1, size=(8, 8))["color"].shape == (8, 8, 3)
-    with pytest.raises(TypeError, match="no option view"):
+    with pytest.raises(TypeError, match="view is an option of durer.load"):
         durer.load(tmp_path / "m.obj").render(view="front")
 
 

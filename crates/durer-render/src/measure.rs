@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 /// Samples per point in the first pass with an error target. Later passes double the number.
 const FIRST_PASS: u32 = 256;
+/// Samples between two checks for cancellation.
+const CANCEL_INTERVAL: u32 = 64;
 
 /// Point at which light is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +122,8 @@ impl Sums {
 }
 
 /// Measures the light at points. The result does not depend on the number of threads. `progress`
-/// receives the finished share of the samples, from 0 to 1.
+/// receives the finished share of the samples, from 0 to 1. If `path` is cancelled, the result is
+/// incomplete and must be discarded.
 pub fn measure(
     path: &Path,
     sensors: &[Sensor],
@@ -144,16 +147,25 @@ pub fn measure(
         path.prepare(first);
         sums.par_iter_mut().zip(sensors).enumerate().for_each(|(number, (sums, sensor))| {
             // A sensor that has once reached the target has fewer samples than the pass assumes.
-            if sums.samples < first || target.is_some_and(|target| is_precise(sums, rare, target)) {
+            if path.is_cancelled()
+                || sums.samples < first
+                || target.is_some_and(|target| is_precise(sums, rare, target))
+            {
                 return;
             }
             for sample in first..end {
+                if sample % CANCEL_INTERVAL == 0 && path.is_cancelled() {
+                    return;
+                }
                 let id = SampleId::new(seed, (number as u32, 0), sample);
                 sums.add(path.irradiance(sensor.point.as_dvec3(), sensor.normal, id, &mut ()), lumens);
             }
         });
         first = end;
         progress(f64::from(first) / f64::from(samples));
+        if path.is_cancelled() {
+            break;
+        }
         if error.is_some() && sums.iter().all(|sums| sums.samples < first) {
             break;
         }

@@ -20,10 +20,10 @@ from .pictures import compare, read
 from .rays import Mesh, Scene
 from .things import Difference, Group, Intersection, Merge, Model, Moved, Object, Thing, Union_ as Union, Xor
 from .words import *
-from .world import Part, Pictures, Surfaces, World, check, kinds, load, options
+from .world import Illuminance, Part, Pictures, Surfaces, World, check, kinds, load, options
 
 __all__ = [
-    "RECORD", "AllHits", "Difference", "Group", "Hits", "Intersection", "Merge", "Mesh", "Model", "Moved", "Nearest", "Object",
+    "RECORD", "AllHits", "Difference", "Group", "Hits", "Illuminance", "Intersection", "Merge", "Mesh", "Model", "Moved", "Nearest", "Object",
     "Part", "Pictures", "RenderError", "Scene", "SceneError", "Surfaces", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
     "kinds", "load", "options", "read", *words.__all__,
 ]  # fmt: skip

@@ -66,9 +66,12 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
     for keyword, value in options.items():
         name = option_name(keyword)
         if name not in OPTIONS or is_reading(name) != reading and (name, reading) != ("size", True):
+            if name in OPTIONS:
+                where = "durer.load" if is_reading(name) else "render"
+                raise TypeError(f"{keyword} is an option of {where}")
             known = [n.replace("-", "_") for n in OPTIONS if is_reading(n) == reading]
             near = difflib.get_close_matches(keyword, known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"the options are {', '.join(known)}"
+            hint = f"did you mean {near[0]}?" if near else "durer.options() lists them all"
             raise TypeError(f"there is no option {keyword}: {hint}")
         found += [(name, text) for text in _texts(keyword, name, value)]
     return found

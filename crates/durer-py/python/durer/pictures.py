@@ -18,7 +18,13 @@ from .world import PathLike, Pictures
 def read(path: PathLike) -> tuple[Floats, bool]:
     """Reads an image file in any format that the command writes. Returns the values without
     conversion, of shape (height, width, 3), and True if they are display values from 0 to 1 instead
-    of linear light."""
+    of linear light.
+
+    >>> world.render(size=(40, 30), samples=1).save("picture.png")
+    >>> values, is_display = durer.read("picture.png")
+    >>> values.shape, is_display
+    ((30, 40, 3), True)
+    """
     values, width, height, display = _durer.decode(Path(path).read_bytes(), os.fspath(path))
     return values.reshape(height, width, 3), display
 
@@ -37,6 +43,11 @@ def compare(
     Images are files, results of `render`, or arrays of shape (height, width, 3): uint8 for display
     values, floating point for linear light. `allowed` is the fraction of pixels that may differ by
     more than the tolerance.
+
+    >>> picture = np.zeros((30, 40, 3), np.float32)
+    >>> found = durer.compare(picture, picture + 0.5)
+    >>> found["flip_map"].shape
+    (30, 40)
     """
     a, b = _scaled("reference", reference), _scaled("picture", picture)
     text, flip = _durer.compare(a, b, tolerance, allowed)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
+import warnings
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Iterable, Literal, Mapping, Optional, Sequence, TypeAlias, Union
 
 import numpy as np
@@ -11,7 +14,9 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, Points, as_array, as_indices, as_matrix, as_points, as_scalars, as_vectors, rows
+from ._errors import SceneError, with_python_names
 from ._mesh import FAR, centered, open_edges
+from ._options import pairs
 from ._progress import Progress, watch
 from .hits import AllHits, Hits, Nearest
 
@@ -74,7 +79,14 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Hits:
-        """Returns the first hit of each ray."""
+        """Returns the first hit of each ray.
+
+        >>> hits = mesh.closest([(0, 0, 5), (9, 0, 5)], (0, 0, -1))
+        >>> hits.t, hits.hit
+        (array([ 4., inf], dtype=float32), array([ True, False]))
+        >>> hits.point[0], hits.normal[0]
+        (array([0., 0., 1.], dtype=float32), array([0., 0., 1.], dtype=float32))
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         t, triangle, objects, uv = self._tree.closest(rays, check_threads(threads), watch(progress, rays[0]))
         objects = None if objects is None else objects.reshape(shape)
@@ -82,7 +94,11 @@ class _Rays:
 
     def ray(self, origins: npt.ArrayLike, directions: npt.ArrayLike, **options: Any) -> npt.NDArray[np.void]:
         """Returns the first hit of each ray as a structured array with the fields t, triangle,
-        object, uv, normal and point."""
+        object, uv, normal and point.
+
+        >>> mesh.ray((0, 0, 5), (0, 0, -1))["t"]
+        array(4., dtype=float32)
+        """
         return self.closest(origins, directions, **options).record()
 
     def occluded(
@@ -96,7 +112,12 @@ class _Rays:
         progress: Progress = None,
     ) -> Bools:
         """Returns True for each ray that hits anything. Faster than `closest`. To test whether two
-        points see each other, use their difference as the direction and `t_max` 1."""
+        points see each other, use their difference as the direction and `t_max` 1.
+
+        >>> a, b = np.array((0, 0, 5)), np.array((0, 0, -5))
+        >>> bool(mesh.occluded(a, b - a, t_max=1))
+        True
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         return self._tree.occluded(rays, check_threads(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -111,7 +132,11 @@ class _Rays:
         progress: Progress = None,
     ) -> Ints:
         """Returns the number of triangles that each ray crosses, which is exact even through edges
-        and vertices."""
+        and vertices.
+
+        >>> int(mesh.count((0, 0, 5), (0, 0, -1)))  # through the diagonals of two faces
+        2
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         return self._tree.count(rays, check_threads(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -125,7 +150,11 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> AllHits:
-        """Returns all hits of each ray, sorted by distance."""
+        """Returns all hits of each ray, sorted by distance.
+
+        >>> mesh.all_hits((0, 0, 5), (0, 0, -1)).t
+        array([4., 6.], dtype=float32)
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         count, (t, triangle, object, uv) = self._tree.all_hits(rays, check_threads(threads), watch(progress, rays[0]))
         ray = np.repeat(np.arange(len(count)), count)
@@ -136,7 +165,11 @@ class _Rays:
     ) -> Bools:
         """Returns True for each point, of shape (..., 3), that is inside, by the parity of
         crossings, which is exact for closed meshes. In a scene, a point is inside if any object
-        contains it."""
+        contains it.
+
+        >>> mesh.contains([(0, 0, 0), (0, 0, 3)])
+        array([ True, False])
+        """
         at = as_points("points", points)
         answer = self._tree.contains(rows(at, 3), check_threads(threads), watch(progress))
         return answer.reshape(at.shape[:-1])
@@ -150,14 +183,23 @@ class _Rays:
         progress: Progress = None,
     ) -> Nearest:
         """Returns the point on the surface nearest to each query point, of shape (..., 3), within
-        the distance `within`."""
+        the distance `within`.
+
+        >>> nearest = mesh.nearest((0.25, 0.5, 3))
+        >>> nearest.point, float(nearest.distance)
+        (array([0.25, 0.5 , 1.  ]), 2.0)
+        """
         raise NotImplementedError
 
     def distance(
         self, points: npt.ArrayLike, *, signed: bool = False, threads: Optional[int] = None, progress: Progress = None
     ) -> Doubles:
         """Returns the distance of each point from the surface. If `signed`, distances are negative
-        inside, which needs closed meshes."""
+        inside, which needs closed meshes.
+
+        >>> mesh.distance([(0, 0, 0), (0, 0, 3)], signed=True)
+        array([-1.,  2.])
+        """
         distance = self.nearest(points, threads=threads, progress=progress).distance
         if signed:
             distance[self.contains(points, threads=threads)] *= -1
@@ -187,10 +229,15 @@ class Mesh(_Rays):
         """A triangle mesh, ready for ray queries.
 
     `vertices` has the shape (n, 3) and `faces` (m, 3): indices of vertices. Both are copied and
-    immutable. Vertices are stored in single precision; if they are far from the origin compared
+    immutable. An object with these two attributes, such as a `trimesh.Trimesh`, can be passed
+    alone: `Mesh(trimesh.load("part.stl"))`. Vertices are stored in single precision; if they are far from the origin compared
     with their extent, relative to the centre of their bounds, so that no precision is lost.
     Triangles with a corner that is not finite are ignored. `preset` is the effort of the build:
     "fast", "balanced" or "best". The slower "best" pays off for many rays.
+
+    >>> mesh = durer.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    >>> mesh.closest((0.2, 0.2, 5), (0, 0, -1)).t
+    array(5., dtype=float32)
     """,
     )
 
@@ -200,16 +247,38 @@ class Mesh(_Rays):
 
     def __init__(
         self,
-        vertices: npt.ArrayLike,
-        faces: npt.ArrayLike,
+        vertices: Any,
+        faces: Optional[npt.ArrayLike] = None,
         preset: Preset = "balanced",
         *,
         threads: Optional[int] = None,
     ) -> None:
+        if faces is None:
+            if not hasattr(vertices, "vertices") or not hasattr(vertices, "faces"):
+                raise TypeError("faces are missing: pass vertices and faces, or one object that has both, such as a Trimesh")
+            vertices, faces = vertices.vertices, vertices.faces
         given = as_points("vertices", vertices)
         if given.ndim != 2:
             raise ValueError(f"vertices must have the shape (n, 3), but has {given.shape}")
         self._build(*centered(given), as_indices("faces", faces), preset, threads)
+
+    @classmethod
+    def from_file(cls, path: Union[str, os.PathLike[str]], preset: Preset = "balanced", **reading: Any) -> Mesh:
+        """Reads all meshes of a file as one mesh in world space: OBJ, PLY, STL, OFF, 3MF, glTF,
+        OpenUSD, COLLADA, and any scene that the command reads. Spheres and other shapes that are
+        not meshes are left out with a warning. Options are those of `durer.load`. Raises SceneError
+        with file, line and column if the file is invalid or has no triangles.
+
+        >>> durer.Mesh.from_file("scenes/meshes/durer-solid.obj").is_closed
+        True
+        """
+        given = pairs(reading, True)
+        corners, faces, left_out = with_python_names(lambda: _durer.read_mesh(Path(path), given))
+        if len(faces) == 0:
+            raise SceneError(f"{os.fspath(path)}: error: no triangles", "[]")
+        if left_out:
+            warnings.warn(f"{left_out} objects of {os.fspath(path)} are not meshes and were left out", stacklevel=2)
+        return cls(corners.reshape(-1, 3), faces.reshape(-1, 3), preset)
 
     def _build(
         self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset, threads: Optional[int] = None
@@ -238,7 +307,12 @@ class Mesh(_Rays):
     def refit(self, vertices: npt.ArrayLike) -> Mesh:
         """Returns the mesh with moved vertices, which must have the same number. Its tree is a
         refitted copy of this mesh's tree. Refitting is much faster than building, but rays become
-        slower the farther vertices move. The results are those of a new mesh."""
+        slower the farther vertices move. The results are those of a new mesh.
+
+        >>> moved = mesh.refit(mesh.vertices + (0, 0, 1))
+        >>> moved.closest((0, 0, 5), (0, 0, -1)).t
+        array(3., dtype=float32)
+        """
         given = as_points("vertices", vertices)
         if given.shape != self._own.shape:
             raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
@@ -291,7 +365,12 @@ class Mesh(_Rays):
     def surface(self, triangle: npt.ArrayLike, uv: npt.ArrayLike) -> Hits:
         """Returns points on the surface as hits with `t` 0, which have `point`, `normal` and
         `leave`. A point is given by its triangle, of shape (...), and by u and v, of shape (...,
-        2). Use it, for example, to start rays at nearest points or at vertices."""
+        2). Use it, for example, to start rays at nearest points or at vertices.
+
+        >>> nearest = mesh.nearest((0.25, 0.5, 3))
+        >>> mesh.surface(nearest.triangle, nearest.uv).leave((0, 0, 1)).shape
+        (3,)
+        """
         triangles, places = np.asarray(as_array("triangle", triangle), np.int32), as_vectors("uv", uv, 2)
         if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
             raise ValueError(f"each point needs u, v and the index of one of the {len(self.faces)} triangles")
@@ -329,6 +408,11 @@ class Scene(_Rays):
     `objects` are meshes, or pairs of a mesh and its matrix to world space, 4 x 4 or 3 x 4, which
     can be any invertible affine map. If several objects are hit at the same `t`, the one with the
     lowest index wins.
+
+    >>> right = np.array([[1, 0, 0, 4], [0, 1, 0, 0], [0, 0, 1, 0]])
+    >>> scene = durer.Scene([mesh, (mesh, right)])
+    >>> scene.closest([(0, 0, 5), (4, 0, 5), (9, 0, 5)], (0, 0, -1)).object
+    array([ 0,  1, -1], dtype=int32)
     """,
     )
 
@@ -391,7 +475,9 @@ class Scene(_Rays):
         triangle = np.where(near.triangle >= 0, near.triangle - starts[np.maximum(objects, 0)], -1).astype(np.int32)
         return Nearest(near.distance, near.point, triangle, objects.astype(np.int32), near.uv)
 
-    nearest.__doc__ = (_Rays.nearest.__doc__ or "") + " The first such query joins all objects into one mesh."
+    nearest.__doc__ = (_Rays.nearest.__doc__ or "").replace(
+        "`within`.", "`within`. The first such query joins all objects into one mesh."
+    )
 
 
 def split_rays(value: Any) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, as_vectors
+from ._arrays import Bools, Doubles, Floats, Ints, as_points, as_vectors
 from ._errors import SceneError, with_python_names
 from ._options import OPTIONS, Pairs, is_reading, is_work, pairs, parse_words
 from ._progress import Progress, watch
@@ -38,6 +38,7 @@ class Pictures(dict[str, Floats]):
         super().__init__()
         #: The part that contains the images.
         self.part = part
+        self._denoised: Optional[tuple[str, int, int, Floats, Optional[Floats]]] = None
         self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
         for name, width, height, values, alpha in part._part.pictures(False):
             picture = values.reshape(height, width, 3)
@@ -54,20 +55,50 @@ class Pictures(dict[str, Floats]):
         """Hash of the film, as `durer render --hash` prints it for the same job."""
         return self.part.hash
 
-    def file(self, name: str, transfer: str = "srgb") -> bytes:
+    def file(
+        self, name: str, transfer: str = "srgb", *, exposure: float = 0.0, tone: str = "none", bits: int = 8
+    ) -> bytes:
         """Returns the bytes of an image file. The extension of `name` selects the format. `.exr`
-        files contain all images; other files contain the first, as display values in eight-bit
-        formats."""
-        eight = Path(name).suffix.lower() in (".png", ".tga", ".bmp", ".ppm")
-        layers = []
-        for layer, width, height, values, alpha in self.part._part.pictures(eight):
-            color = layer == "color"
-            layers.append((layer, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
-        return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], transfer)
+        files contain all images; other files contain the first.
 
-    def save(self, path: PathLike, transfer: str = "srgb") -> None:
-        """Writes the images to a file: png, tga, bmp, ppm, pfm, hdr or exr."""
-        _write(Path(path), self.file(os.fspath(path), transfer))
+        The options affect formats with integer values. `exposure` is in stops, each of which
+        doubles the brightness, `tone` is "none", "reinhard", "aces", "agx" or "khronos-neutral",
+        `transfer` is "srgb", "linear" or "course", and `bits` is 8 or 16 (png and ppm).
+
+        >>> world.render(size=(8, 8), samples=1).file("a.png", exposure=1, bits=16)[:4]
+        b'\\x89PNG'
+        """
+        integers = Path(name).suffix.lower() not in (".pfm", ".hdr", ".exr")
+        if not np.isfinite(exposure):
+            raise ValueError(f"exposure must be a number of stops, but is {exposure!r}")
+        layers = []
+        for layer, width, height, values, alpha in self._layers(integers):
+            color = layer in ("color", "denoised")
+            layers.append((layer, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        shown = (2.0**exposure, tone, transfer, bits)
+        return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], shown)
+
+    def _layers(self, shown: bool) -> list[tuple[str, int, int, Floats, Optional[Floats]]]:
+        layers = self.part._part.pictures(shown)
+        return [*([] if self._denoised is None else [self._denoised]), *layers]
+
+    def save(
+        self, path: PathLike, transfer: str = "srgb", *, exposure: float = 0.0, tone: str = "none", bits: int = 8
+    ) -> None:
+        """Writes the images to a file: png, jpg, webp, tga, bmp, ppm, pfm, hdr or exr. Options are
+        those of `file`."""
+        content = self.file(os.fspath(path), transfer, exposure=exposure, tone=tone, bits=bits)
+        _write(Path(path), content)
+
+    @property
+    def stats(self) -> dict[str, int]:
+        """Numbers of `samples`, `rays`, and `rejected` samples, which were NaN or infinite.
+
+        >>> world.render(size=(8, 8), samples=4).stats["samples"]
+        256
+        """
+        samples, rays, rejected = self.part._part.statistics()
+        return {"samples": samples, "rays": rays, "rejected": rejected}
 
     def _repr_png_(self) -> bytes:
         return self.file("picture.png")
@@ -107,7 +138,13 @@ class Part:
     @classmethod
     def merge(cls, parts: Iterable[Union[Part, PathLike, bytes]]) -> Part:
         """Merges parts. The result has the same bits as a single run. Raises RenderError if parts
-        belong to different images or overlap, or if a part is missing."""
+        belong to different images or overlap, or if a part is missing.
+
+        >>> parts = [world.part(size=(16, 16), samples=4, shard=(i, 2)) for i in (1, 2)]
+        >>> whole = [world.render(part=part) for part in parts]
+        >>> durer.Part.merge(parts).hash == world.render(size=(16, 16), samples=4).hash
+        True
+        """
         named = []
         for i, part in enumerate(parts, 1):
             if isinstance(part, Part):
@@ -268,7 +305,12 @@ class World:
 
     @classmethod
     def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
-        """Reads a scene from text in the scene language, as if it were a file in `folder`."""
+        """Reads a scene from text in the scene language, as if it were a file in `folder`.
+
+        >>> text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Group { Sphere { center 0 0 0 radius 1 } }"
+        >>> durer.World.from_text(text).closest((0, 0, 5), (0, 0, -1)).t
+        array(4., dtype=float32)
+        """
         world = cls.__new__(cls)
         world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
         return world
@@ -357,6 +399,10 @@ class World:
         `part` continues earlier work. `callback` is called with the images so far, every `every`
         seconds. Ctrl-C and exceptions in the callback stop the render; the part keeps the work done
         so far.
+
+        >>> pictures = world.render(size=(40, 30), samples=4, show="color,depth")
+        >>> pictures["color"].shape, pictures["depth"].shape
+        ((30, 40, 3), (30, 40))
         """
         if part is not None and options:
             self._same(part, options)
@@ -424,7 +470,11 @@ class World:
         progress: Progress = None,
     ) -> Surfaces:
         """Returns the first hit of each ray with any object, including spheres and solids, as when
-        rendering. Arguments are those of `Mesh.closest`."""
+        rendering. Arguments are those of `Mesh.closest`.
+
+        >>> world.closest((0, 5, 0), (0, -1, 0))
+        <Surfaces of 1 rays: 1 hit something>
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         ids, values, places = self._world.closest(rays, check_threads(threads), watch(progress))
         whole, other, place = ids.reshape(-1, 3), values.reshape(-1, 10), places.reshape(*shape, 4)
@@ -449,13 +499,78 @@ class World:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Bools:
-        """Returns True for each ray that hits anything, including glass."""
+        """Returns True for each ray that hits anything, including glass.
+
+        >>> world.occluded((0, 5, 0), (0, -1, 0))
+        array(True)
+        """
         shape, rays = check_rays(origins, directions, t_min, t_max)
         return self._world.occluded(rays, check_threads(threads), watch(progress)).reshape(shape)
 
+    def denoise(self, pictures: Pictures) -> Pictures:
+        """Returns the images of a render of this world with the denoised colour first, as
+        `denoised`, of shape (height, width, 3). The denoiser is the built-in one of `durer render
+        --denoise=own`: a non-local-means filter guided by albedo, normals and positions.
+
+        >>> noisy = world.render(size=(40, 30), samples=4)
+        >>> world.denoise(noisy)["denoised"].shape
+        (30, 40, 3)
+        """
+        result = Pictures(pictures.part)
+        name, width, height, values, alpha = pictures.part._part.denoised(self._world)
+        result._denoised = (name, width, height, values, alpha)
+        result[name] = values.reshape(height, width, 3)
+        return result
+
+    def measure(
+        self,
+        points: npt.ArrayLike,
+        normals: npt.ArrayLike = (0.0, 1.0, 0.0),
+        *,
+        samples: Optional[int] = None,
+        error: Optional[float] = None,
+        progress: Progress = None,
+        **options: Any,
+    ) -> Illuminance:
+        """Measures the light that arrives at points, of shape (..., 3), on the side of `normals`,
+        by path tracing, with the values of `durer measure`.
+
+        `samples` is the number of samples of each point [default: 4096]. With `error`, for example
+        0.01, a point needs no more samples once its relative standard error is that small, and
+        `samples` is the maximum [default: 1048576]. Other options are those of `render`, such as
+        bounces and seed. A model's own light is measured only if it was loaded with `studio=False`.
+
+        >>> light = world.measure((0, 1.2, 0), normals=(0, 1, 0), samples=64)
+        >>> light.illuminance.shape, bool(light.illuminance > 0)
+        ((), True)
+        """
+        at = np.asarray(as_points("points", points), np.float32)
+        shape = at.shape[:-1]
+        towards = np.broadcast_to(np.asarray(as_vectors("normals", normals, 3), np.float64), (*shape, 3))
+        lengths = np.linalg.norm(towards, axis=-1, keepdims=True)
+        if not (np.isfinite(at).all() and np.isfinite(lengths).all() and (lengths > 0).all()):
+            raise ValueError("points must be finite, and normals finite and not zero")
+        if error is not None and not 0 < error <= 1:
+            raise ValueError(f"error must be a share from 0 to 1, but is {error!r}")
+        most = samples if samples is not None else 4096 if error is None else 1 << 20
+        if not isinstance(most, (int, np.integer)) or not 2 <= most <= 1 << 24:
+            raise ValueError(f"samples must be a whole number from 2 to {1 << 24}, but is {most!r}")
+        given = self._all({"integrator": "path", **options})
+        rows = np.ascontiguousarray(at.reshape(-1, 3)), np.ascontiguousarray(towards / lengths, np.float32).reshape(-1, 3)
+        found = with_python_names(lambda: _durer.measure(self._world, rows, (int(most), error), given, watch(progress)))
+        irradiance, lux, deviation, count, rare = found
+        return Illuminance(
+            lux.reshape(shape), deviation.reshape(shape), irradiance.reshape(*shape, 3), count.reshape(shape), rare
+        )
+
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
         """Explains a pixel's colour as a tree of terms that sum to it; see docs/explain.md. Pass
-        the options of the render."""
+        the options of the render.
+
+        >>> found = world.explain(20, 15, size=(40, 30), samples=1)
+        >>> sorted(found)
+        ['lights', 'materials', 'objects', 'pixel', 'version']
+        """
         for name, value in (("x", x), ("y", y)):
             if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
                 raise ValueError(f"{name} must be a pixel coordinate, a whole number of 0 or more, but is {value!r}")
@@ -465,7 +580,11 @@ class World:
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
         """Returns likely mistakes in the scene, causes before consequences, as `durer check --json`
-        lists them."""
+        lists them.
+
+        >>> world.check()
+        []
+        """
         given = self._all(options)
         found: list[dict[str, Any]] = json.loads(with_python_names(lambda: self._world.check(given)))
         return found
@@ -477,14 +596,46 @@ class World:
         return f"<World {self.path.name}, dialect {self.dialect}>"
 
 
+@dataclass(frozen=True)
+class Illuminance:
+    """Light at the points that `World.measure` was given, in arrays of their shape."""
+
+    #: Illuminance in lux, if the light of the scene has units; otherwise in the scene's unit.
+    illuminance: Doubles
+    #: Standard error of the illuminance, if samples were independent, so it is rather too large.
+    error: Doubles
+    #: Irradiance of the three channels, of shape (..., 3): in W/m^2 in Radiance scenes, otherwise in
+    #: the unit of the illuminance.
+    irradiance: Doubles
+    #: Number of samples of each point.
+    samples: npt.NDArray[np.uint32]
+    #: True if lights that only BSDF sampling finds dominate the error of a point: use more samples
+    #: or `integrator="photons"`.
+    has_rare_light: bool
+
+    @property
+    def uniformity(self) -> float:
+        """U0: the minimum divided by the average; 0 in the dark."""
+        average = float(self.illuminance.mean())
+        return float(self.illuminance.min()) / average if average > 0 else 0.0
+
+
 def load(path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
-    """Reads any scene that the command reads: see `World.load`."""
+    """Reads any scene that the command reads: see `World.load`.
+
+    >>> durer.load("scenes/whitted.txt")
+    <World whitted.txt, dialect durer>
+    """
     return World.load(path, words=words, **reading)
 
 
 def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
     """Returns errors and likely mistakes of a scene file, even if it cannot be rendered, as
-    `durer check --json` lists them."""
+    `durer check --json` lists them.
+
+    >>> durer.check("scenes/whitted.txt")
+    []
+    """
     reading = {name: options.pop(name) for name in list(options) if is_reading(name)}
     try:
         return World.load(path, **reading).check(**options)
@@ -493,13 +644,21 @@ def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
 
 
 def options() -> dict[str, str]:
-    """Returns the options of `World.render` with their help."""
+    """Returns the options of `World.render` with their help.
+
+    >>> "samples" in durer.options()
+    True
+    """
     return {name.replace("-", "_"): info.help for name, info in OPTIONS.items() if info.group != "reading"}
 
 
 def kinds() -> dict[str, str]:
-    """Returns the images that `show` accepts besides `color`, with their descriptions."""
+    """Returns the images that `show` accepts besides `color`, with their descriptions.
+
+    >>> "normals" in durer.kinds()
+    True
+    """
     return dict(_durer.Part.kinds())
 
 
-__all__ = ["Part", "Pictures", "SceneError", "Surfaces", "Thing", "World", "check", "kinds", "load", "options"]
+__all__ = ["Illuminance", "Part", "Pictures", "SceneError", "Surfaces", "Thing", "World", "check", "kinds", "load", "options"]

@@ -117,10 +117,19 @@ impl ModelAxes {
 const ANGLE: f32 = 30.0;
 /// Number of angles of an orbiting camera from which the model must be visible.
 const ORBIT_STEPS: u32 = 48;
+/// Background of a model with lights of its own, in the unit of radiance.
+const SURROUNDINGS: f32 = 0.15;
 /// Fraction of the width or height of the picture that a model fills.
 const FILL: f64 = 0.86;
 
 impl SceneDefaults {
+    /// Adds no lights and no ground, and replaces requested lighting by none, for a program that
+    /// reads only the meshes of a model.
+    pub fn meshes_only(&mut self) {
+        self.lighting = self.lighting.and(Some(DefaultLighting::None));
+        self.own_light = true;
+    }
+
     /// Adds the parts that the scene lacks. `up` is the usual up axis of the format of the scene.
     /// If `dark` is set, a scene without lights counts as complete if it has a camera or emitters.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
@@ -129,24 +138,30 @@ impl SceneDefaults {
         let lit = scene.is_lit
             || (dark && (scene.camera.is_some() || scene.emits_light()))
             || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        let pose = scene.camera.as_ref().map(Projection::pose);
+        let mut fitted = false;
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
-        } else if let (Some(pose), true) = (scene.camera.as_ref().map(Projection::pose), self.fit) {
+        } else if let Some(pose) = pose.filter(|pose| self.fit || !lit && self.may_fit(scene, pose.center)) {
             let [forward, up] = [pose.direction, pose.up].map(|v| v.as_dvec3().normalize_or(sides.up));
             scene.camera = Some(self.framing_camera(scene, &sides, (-forward, up), true));
+            // A camera that looks up would see the ground from below.
+            fitted = forward.dot(sides.up) < 0.1;
         }
         assign_default_material(scene);
         let surrounded = self.environment.is_some() && self.lighting.is_none();
         let missing = !lit && !surrounded && !self.own_light;
         let studio = self.lighting.or(missing.then(DefaultLighting::default));
         if let Some(studio) = studio {
-            self.light(scene, &sides, studio, framed);
+            self.light(scene, &sides, studio, framed || fitted);
         }
-        // The background of a scene that has its own light is black, unless the file sets it.
         let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         let unset = scene.background == Background::default() && !scene.background_span.has_position();
         if (emits || self.own_light) && unset {
-            scene.background.color = Vec3::ZERO;
+            // The lights of a model say little about its surroundings, which metals and glass show.
+            // A complete scene has only its own light.
+            let is_model = !dark && !self.own_light;
+            scene.background.color = if is_model { Vec3::splat(SURROUNDINGS) } else { Vec3::ZERO };
         }
     }
 
@@ -162,6 +177,16 @@ impl SceneDefaults {
             PresetView::Iso => (front + right + up, up),
         };
         self.framing_camera(scene, sides, (back, above), view == PresetView::ThreeQuarter)
+    }
+
+    /// Returns true if the camera of a model without lights may be moved so that the full model is
+    /// visible: if it was not selected by name, is not part of an animation, and is not inside.
+    fn may_fit(&self, scene: &Scene, eye: Vec3) -> bool {
+        let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
+        let eye = eye.as_dvec3();
+        let is_inside = eye.cmpge(least).all() && eye.cmple(most).all();
+        self.camera.is_none() && self.view_file.is_none() && self.animation_time.is_none() && !is_inside
     }
 
     /// Creates a camera that shows the full scene from the given direction.

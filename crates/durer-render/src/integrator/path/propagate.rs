@@ -151,7 +151,7 @@ impl Path<'_> {
     }
 
     /// Returns true if the render was cancelled.
-    pub(super) fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 

@@ -1,0 +1,67 @@
+//! Illuminance at points, which backs `World.measure`.
+
+use crate::work::watched;
+use crate::world::{Pairs, World, options};
+use durer::integrator::{Integrator, IntegratorContext};
+use durer::math::{LUMINANCE, Vec3};
+use durer::measure::{MeasureOptions, Measurement, Sensor, measure as measure_light};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Measured light for Python: the irradiance of each channel, the illuminance, its standard error
+/// and the number of samples of each point, and true if rare lights dominate an error.
+type Light<'py> =
+    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, bool);
+
+/// Measures the light at `sensors`: points of shape (n, 3) and unit normals of shape (n, 3).
+/// `precision` is the number of samples and the error target.
+#[pyfunction]
+pub fn measure<'py>(
+    py: Python<'py>,
+    world: &World,
+    sensors: (PyReadonlyArray2<'py, f32>, PyReadonlyArray2<'py, f32>),
+    precision: (u32, Option<f64>),
+    pairs: Pairs,
+    watch: Option<Py<PyAny>>,
+) -> PyResult<Light<'py>> {
+    let ((points, normals), (samples, error)) = (sensors, precision);
+    let options = options(&pairs)?;
+    let job = options.resolve(&world.loaded).map_err(PyValueError::new_err)?;
+    let vectors = |array: &PyReadonlyArray2<f32>| -> PyResult<Vec<Vec3>> {
+        Ok(array.as_slice()?.chunks_exact(3).map(Vec3::from_slice).collect())
+    };
+    let sensors = vectors(&points)?.into_iter().zip(vectors(&normals)?);
+    let sensors: Vec<Sensor> = sensors.map(|(point, normal)| Sensor { point, normal }).collect();
+    let lumens = world.world.lumens().unwrap_or(LUMINANCE);
+    let settings = MeasureOptions { samples, error, seed: job.seed, lumens };
+    let found = watched(py, options.threads, watch, |cancel, progress| {
+        let context = IntegratorContext {
+            world: &world.world,
+            settings: job.settings,
+            cone: None,
+            seed: job.seed,
+            cancel: Some(cancel),
+        };
+        match job.method.create(context) {
+            Integrator::Path(path) | Integrator::Photons(path) => {
+                Some(measure_light(&path, &sensors, &settings, progress))
+            }
+            _ => None,
+        }
+    })?;
+    let Some(Measurement { points, has_rare_light }) = found else {
+        return Err(PyValueError::new_err(
+            "only path tracing can measure light: the integrator must be path or photons",
+        ));
+    };
+    let irradiance: Vec<f64> = points.iter().flat_map(|point| point.irradiance).collect();
+    let column = |value: fn(&durer::measure::Measured) -> f64| points.iter().map(value).collect::<Vec<_>>();
+    Ok((
+        irradiance.into_pyarray(py),
+        column(|point| point.illuminance).into_pyarray(py),
+        column(|point| point.error).into_pyarray(py),
+        points.iter().map(|point| point.samples).collect::<Vec<_>>().into_pyarray(py),
+        has_rare_light,
+    ))
+}
