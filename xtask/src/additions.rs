@@ -24,6 +24,8 @@ const INTEGRATORS: &str = "durer-render/src/integrator/mod.rs";
 const PICTURES: &str = "durer-image/src/formats.rs";
 const FORMATS: &str = "durer-formats/src/lib.rs";
 const SCENES: &str = "durer-formats/src/scene.rs";
+const EXPORT: &str = "durer-formats/src/export/light.rs";
+const GLTF: &str = "durer-formats/src/gltf/write/mod.rs";
 const AOVS: &str = "durer-render/src/film/aov.rs";
 
 const ADDITIONS: &[Addition] = &[
@@ -52,6 +54,8 @@ const ADDITIONS: &[Addition] = &[
         words: &[
             (LIGHTS, "pub mod photometric;", "pub mod glow;\n"),
             (LIGHTS, "Point(point::PointLight),", "Glow(glow::GlowLight),\n        "),
+            (EXPORT, "            Light::Photometric(_) => {", "            Light::Glow(_) => None,\n"),
+            (GLTF, "            Light::Photometric(_) => {", "            Light::Glow(_) => return None,\n"),
         ],
     },
     Addition {
@@ -86,9 +90,8 @@ const ADDITIONS: &[Addition] = &[
         file: "durer-formats/src/balls.rs",
         content: include_str!("additions/balls.rs"),
         words: &[
-            (FORMATS, "mod bodies;", "mod balls;\n"),
-            (SCENES, "    gltf::FORMAT,", "    balls::FORMAT,\n"),
-            (SCENES, "gltf, mitsuba", "balls, "),
+            (FORMATS, "pub mod asset_export;", "mod balls;\n"),
+            (SCENES, "    single_mesh_format(&ply::FORMAT),", "    super::balls::FORMAT,\n"),
         ],
     },
     Addition {
@@ -97,23 +100,22 @@ const ADDITIONS: &[Addition] = &[
         content: include_str!("additions/corners.rs"),
         words: &[
             (FORMATS, "pub mod course;", "mod corners;\n"),
-            (FORMATS, "stl::FORMAT]", "corners::FORMAT, "),
-            (SCENES, "    alone(&stl::FORMAT),", "    alone(&corners::FORMAT),\n"),
-            (SCENES, "extension, ", "corners, "),
+            (FORMATS, "off::FORMAT]", "corners::FORMAT, "),
+            (SCENES, "    single_mesh_format(&stl::FORMAT),", "    single_mesh_format(&super::corners::FORMAT),\n"),
         ],
     },
     Addition {
         kind: "picture format",
         file: "durer-image/src/formats/farbfeld.rs",
         content: include_str!("additions/farbfeld.rs"),
-        words: &[(PICTURES, "mod hdr;", "mod farbfeld;\n"), (PICTURES, "exr::FORMAT, ", "farbfeld::FORMAT, ")],
+        words: &[(PICTURES, "mod hdr;", "mod farbfeld;\n"), (PICTURES, "    pfm::FORMAT,", "    farbfeld::FORMAT,\n")],
     },
     Addition {
         kind: "kind of picture",
         file: "durer-render/src/film/aov/heights.rs",
         content: include_str!("additions/heights.rs"),
         words: &[
-            (AOVS, "/// Table of all AOVs, in the order of the help.", "mod heights;\n\n"),
+            (AOVS, "/// Table of all AOVs in the order in which the help lists them.", "mod heights;\n\n"),
             (AOVS, "    Aov {\n        name: \"normals\"", "    heights::AOV,\n"),
         ],
     },
@@ -143,7 +145,17 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let _ = std::fs::remove_dir_all(&copy);
     std::fs::create_dir_all(&copy)?;
     let files = Command::new("git")
-        .args(["ls-files", "-co", "--exclude-standard", "crates", "xtask", "Cargo.toml", "Cargo.lock"])
+        .args([
+            "ls-files",
+            "-co",
+            "--exclude-standard",
+            "crates",
+            "web/dist",
+            "web/dist-report",
+            "xtask",
+            "Cargo.toml",
+            "Cargo.lock",
+        ])
         .current_dir(&root)
         .output()?;
     for name in String::from_utf8(files.stdout)?.lines().filter(|name| root.join(name).is_file()) {

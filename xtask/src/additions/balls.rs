@@ -1,6 +1,6 @@
 //! Example of a scene format: `.balls` has four numbers per line, centre and radius of a sphere.
 
-use super::model::{Input, SceneFormat};
+use super::model::{ReadInput, SceneFormat};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Group, Object, ObjectKind, Scene};
@@ -14,10 +14,11 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: Axis::Y,
-    whole: false,
+    is_complete_scene: false,
+    light_hint: None,
 };
 
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let text = String::from_utf8_lossy(input.bytes);
     let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     let Some(numbers) = numbers.filter(|numbers| numbers.len().is_multiple_of(4)) else {

@@ -1,7 +1,7 @@
 //! Example of a mesh format: `.tri` has nine numbers per line, the vertices of a triangle.
 
 use super::report::Report;
-use super::{MeshFormat, as_it_is};
+use super::{MeshFormat, without_quirks};
 use durer_diag::Diagnostics;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Axis;
@@ -9,7 +9,7 @@ use durer_scene::shape::mesh::MeshData;
 
 /// Mesh format of `.tri` files.
 pub(super) const FORMAT: MeshFormat =
-    MeshFormat { name: "Corners", extensions: &["tri"], recognise, read, known: as_it_is, write, up: Axis::Y };
+    MeshFormat { name: "Corners", extensions: &["tri"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Y };
 
 fn numbers(bytes: &[u8]) -> Option<Vec<f32>> {
     std::str::from_utf8(bytes).ok()?.split_whitespace().map(|word| word.parse().ok()).collect()

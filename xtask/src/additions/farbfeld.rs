@@ -18,6 +18,7 @@ pub const FORMAT: Format = Format {
     extensions: &["ff"],
     depth: Depth::Float,
     supports_layers: false,
+    has_alpha: false,
     max_side: u32::MAX,
     has_signature: |bytes| bytes.starts_with(b"farbfeld"),
     head: |bytes| {

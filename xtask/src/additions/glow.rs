@@ -27,4 +27,48 @@ impl Illuminate for GlowLight {
     fn color(&self) -> Color {
         self.color
     }
+
+    fn color_mut(&mut self) -> &mut Color {
+        &mut self.color
+    }
+
+    fn spectrum(&self) -> Option<&FileName> {
+        self.spectrum.as_ref()
+    }
+
+    fn with_unit_color(&self) -> Self {
+        self.clone()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        Some(self.position)
+    }
+
+    fn direction(&self) -> Option<Vec3> {
+        None
+    }
+
+    fn cone(&self) -> Option<f32> {
+        None
+    }
+
+    fn inverse_square(&self) -> Option<(Vec3, Color)> {
+        None
+    }
+
+    fn angular_radius(&self) -> f32 {
+        0.0
+    }
+
+    fn profile(&self) -> Option<&FileName> {
+        None
+    }
+
+    fn to_profile(&self, dir: Vec3) -> Vec3 {
+        dir
+    }
 }

@@ -1,8 +1,9 @@
 //! Example of a primitive: the regular octahedron |x| + |y| + |z| <= radius around its centre.
 
-use super::{Shape, ShapeHit, SurfacePoint, padded_box};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, padded_box};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::DVec3;
 
@@ -46,5 +47,58 @@ impl Shape for Octahedron {
 
     fn inside(&self, point: DVec3) -> Option<bool> {
         Some((point - self.center.as_dvec3()).abs().element_sum() < f64::from(self.radius))
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Octahedron { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    /// Returns the eight triangles, one in each octant.
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        let vertex = |axis: Vec3, i: u8| self.center + axis * if i == 0 { self.radius } else { -self.radius };
+        let face = |octant: u8| {
+            let [x, y, z] = [0, 1, 2].map(|bit| octant >> bit & 1);
+            let mut corners = vec![vertex(Vec3::X, x), vertex(Vec3::Y, y), vertex(Vec3::Z, z)];
+            if (x + y + z) % 2 == 1 {
+                corners.swap(1, 2);
+            }
+            corners
+        };
+        (0..8).map(face).collect()
+    }
+
+    /// Returns `None`, so the light of a shining octahedron is found by chance.
+    fn emitter(&self, _: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        let positions = self.polygons().concat();
+        let triangles = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Some(MeshData { positions, triangles, ..MeshData::default() })
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        Some(self.polygons())
     }
 }

@@ -232,13 +232,11 @@ impl Writer {
     }
 
     fn light_node(&mut self, light: &Light) {
-        self.block("Node", |w| match light {
-            Light::Point(point) => {
-                w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
-                // The transform of the node determines the position of the light.
-                w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
-            }
-            Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => w.component("Light", light),
+        self.block("Node", |w| {
+            let Light::Point(point) = light else { return w.component("Light", light) };
+            w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
+            // The transform of the node determines the position of the light.
+            w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
         });
     }
 

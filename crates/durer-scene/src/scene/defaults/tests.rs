@@ -116,9 +116,14 @@ fn staging_adds_only_missing_parts() {
     let same = staged(complete.clone(), &SceneDefaults::default());
     assert_eq!((&same.camera, &same.lights), (&complete.camera, &complete.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
-    // The background of a scene with its own light is black. In a scene without any light, the
-    // background is not black, so that something is visible.
-    assert_eq!(same.background.color, Vec3::ZERO);
+    // A model with its own light has dim surroundings. Only its own light counts on request, and in
+    // formats of complete scenes.
+    assert_eq!(same.background.color, Vec3::splat(super::SURROUNDINGS));
+    let own = SceneDefaults { own_light: true, ..SceneDefaults::default() };
+    assert_eq!(staged(complete.clone(), &own).background.color, Vec3::ZERO);
+    let mut whole = complete.clone();
+    SceneDefaults::default().complete(&mut whole, Axis::Y, true);
+    assert_eq!(whole.background.color, Vec3::ZERO);
     // A background that the file sets stays, even if it has the default colour.
     let mut written = complete.clone();
     written.background_span = Span { file: 0, start: 1, end: 2 };
@@ -132,4 +137,31 @@ fn staging_adds_only_missing_parts() {
     };
     let other = staged(complete.clone(), &requested);
     assert!(other.camera != complete.camera && other.lights == complete.lights);
+}
+
+#[test]
+fn camera_of_a_model_without_lights_shows_all_of_it() {
+    let with_eye = |center: Vec3| {
+        let mut scene = scene(vec![Vec3::ZERO, Vec3::ONE]);
+        let camera =
+            PerspectiveCamera { center, direction: Vec3::new(0.0, -0.2, -1.0), ..PerspectiveCamera::default() };
+        scene.camera = Some(camera.into());
+        scene
+    };
+    let plain = SceneDefaults::default();
+    let far = with_eye(Vec3::new(9.0, 3.0, 9.0));
+    let moved = staged(far.clone(), &plain);
+    let (before, after) = (far.camera.as_ref().unwrap().pose(), moved.camera.as_ref().unwrap().pose());
+    assert!((before.direction.normalize() - after.direction.normalize()).length() < 1e-6);
+    assert_ne!(before.center, after.center);
+    // The ground is added too.
+    assert_eq!(moved.root.as_ref().unwrap().objects.len(), 2);
+    let named = SceneDefaults { camera: Some("Main".into()), ..SceneDefaults::default() };
+    assert_eq!(staged(far.clone(), &named).camera, far.camera);
+    // A camera inside the model, for example in a room, stays.
+    let corner = scene(vec![Vec3::ZERO, Vec3::ONE]);
+    let mut middle = Vec3::ZERO;
+    crate::scene::extent::points(&corner, &mut |p| middle += 0.5 * p.as_vec3());
+    let inside = with_eye(middle);
+    assert_eq!(staged(inside.clone(), &plain).camera, inside.camera);
 }

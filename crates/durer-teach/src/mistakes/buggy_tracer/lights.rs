@@ -15,12 +15,9 @@ impl BuggyTracer<'_> {
         if self.bugs.lights.all_negated {
             li.to_light = -li.to_light;
         }
+        // The course's programs have only these two kinds of lights.
         match light {
-            Light::Directional(_) => {
-                if self.bugs.lights.negated {
-                    li.to_light = -li.to_light;
-                }
-            }
+            Light::Directional(_) if self.bugs.lights.negated => li.to_light = -li.to_light,
             Light::Point(point) => {
                 let d = li.distance;
                 match self.bugs.lights.attenuation {
@@ -60,8 +57,7 @@ impl BuggyTracer<'_> {
                     PointLightDirection::MinusPosition => li.to_light = -point.position.normalize_or(li.to_light),
                 }
             }
-            // The course's programs have neither of these kinds of light.
-            Light::Spot(_) | Light::Photometric(_) => {}
+            _ => {}
         }
         li
     }
@@ -72,7 +68,7 @@ impl BuggyTracer<'_> {
         match light {
             Light::Directional(sun) if self.bugs.lights.long => li.to_light * sun.direction.length(),
             Light::Point(_) if self.bugs.lights.long_points => li.to_light * li.distance,
-            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => li.to_light,
+            _ => li.to_light,
         }
     }
 

@@ -341,7 +341,8 @@ impl ColorBugs {
                 self.vein(q, radius, [wood.frequency, wood.amplitude], wood.octaves)
             }
             PatternMaterial::Wood(wood) => wood.conic(turned(q)),
-            PatternMaterial::Mix(_) | PatternMaterial::TwoSided(_) => pattern.weight(q),
+            // Patterns that the course's programs lack.
+            _ => pattern.weight(q),
         };
         if self.exchanged { 1.0 - share } else { share }
     }
