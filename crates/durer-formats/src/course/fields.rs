@@ -2,7 +2,7 @@
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
-use super::words::begins_block;
+use super::words::{begins_block, is_reserved};
 use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
                     }
                     continue;
                 }
-                let block = begins_block(&word) && (self.at_open() || word == "MaterialIndex");
+                let block = begins_block(&word) && (self.at_open() || self.at_named_block() || word == "MaterialIndex");
                 if block && !self.block_continues_after(fields) {
                     self.step_back();
                     self.unclosed();
@@ -144,11 +144,17 @@ impl Reader<'_, '_> {
         })
     }
 
+    /// Returns true if a name and the `{` of its block come next.
+    fn at_named_block(&self) -> bool {
+        self.peek_word().is_some_and(|word| !is_reserved(&word))
+            && self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open)
+    }
+
     /// Returns true if the current block continues after the nested block or number that comes
     /// next.
     fn block_continues_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
-        for i in 0.. {
+        for i in usize::from(self.at_named_block()).. {
             match self.ahead(i).map(|t| t.kind) {
                 Some(TokenKind::Open) => depth += 1,
                 Some(TokenKind::Close) => depth = depth.saturating_sub(1),

@@ -54,7 +54,7 @@ impl Guess {
         }
         if !self.others.is_empty() {
             let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
-            message += &format!(" (other possibilities are {})", names.join(", "));
+            message += &format!(" (it could also be {})", names.join(" or "));
         }
         Diagnostic::note(message).code("dialect")
     }

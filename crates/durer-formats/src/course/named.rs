@@ -44,9 +44,13 @@ impl Reader<'_, '_> {
             let error = Diagnostic::error(format!("no material `{name}` is defined before this point"))
                 .code("unknown-word")
                 .at(span);
-            self.error_once(match near {
-                Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => {
+            let later = self.named_later(&name);
+            self.error_once(match (near, later) {
+                (_, Some(later)) => error
+                    .related(later, "the material has its name here, which is too late")
+                    .help("move that material before this point"),
+                (Some(near), None) => error.help(format!("did you mean `{near}`?")).fix(span, near),
+                (None, None) => {
                     error.help("write the name before the material's block, for example `PhongMaterial gold { ... }`")
                 }
             });
@@ -54,6 +58,13 @@ impl Reader<'_, '_> {
         }
         self.report_foreign_word("names of materials", span, set::DURER);
         number
+    }
+
+    /// Returns the place after the current one where a block has a name.
+    fn named_later(&self, name: &str) -> Option<Span> {
+        let tokens = (0..).map_while(|i| Some((self.ahead(i)?, self.ahead(i + 1)?)));
+        let mut named = tokens.filter(|(word, next)| word.kind == TokenKind::Word && next.kind == TokenKind::Open);
+        named.find(|(word, _)| self.text(word.span) == name).map(|(word, _)| word.span)
     }
 
     /// Returns true if a word can be used as a name, and otherwise reports an error.

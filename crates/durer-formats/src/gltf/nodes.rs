@@ -217,7 +217,7 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
-    /// Warns about a node with a mesh that no scene of the file contains. Nodes that an extension
+    /// Warns about a node with a mesh or a light that no scene of the file contains. Nodes that an extension
     /// may refer to are not reported.
     pub(super) fn report_nodes_without_scene(&self, root: &JsonRef, nodes: &[NodeData]) {
         let scenes = root.value.get("scenes").and_then(|scenes| scenes.as_array());
@@ -232,11 +232,13 @@ impl Model<'_> {
                 stack.extend(&nodes[i].children);
             }
         }
-        let left_out = || (0..nodes.len()).filter(|&i| nodes[i].mesh.is_some() && !is_reached[i]);
+        let shows = |node: &NodeData| node.mesh.is_some() || node.light.is_some();
+        let left_out = || (0..nodes.len()).filter(|&i| shows(&nodes[i]) && !is_reached[i]);
         let Some(first) = left_out().next() else { return };
         let message = match left_out().count() {
+            1 if nodes[first].mesh.is_none() => "no scene contains this node, so its light is off".to_string(),
             1 => "no scene contains this node, so its mesh is not in the picture".to_string(),
-            count => format!("no scene contains this node and {} others with meshes", count - 1),
+            count => format!("no scene contains this node and {} others with meshes or lights", count - 1),
         };
         let at = if nodes[first].name.is_empty() { String::new() } else { "/name".into() };
         self.report.report(Diagnostic::warning, "NODE_NO_SCENE", &format!("/nodes/{first}{at}"), &message);

@@ -64,7 +64,7 @@ const OTHER_ELEMENTS: [&str; 15] = [
 /// Loader that converts the XML of a Mitsuba scene and of its included files to plugins.
 pub(super) struct Loader<'a> {
     input: &'a ReadInput<'a>,
-    report: &'a SharedReport,
+    pub(super) report: &'a SharedReport,
     variables: BTreeMap<String, String>,
     /// Plugins by their ids.
     pub plugins: BTreeMap<String, Rc<Plugin>>,
@@ -171,7 +171,7 @@ impl<'a> Loader<'a> {
     /// Skips the content of an element, and reports any child elements.
     fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
-            self.report.error(tag.at, format!("a `{of}` must have no child elements"));
+            self.report.error(tag.at, format!("`<{of}>` cannot contain other elements"));
             self.skip(xml)?;
         }
         Ok(())

@@ -3,6 +3,7 @@
 use super::load::{ErrorReported, Loader, numbers};
 use crate::shared_report::suggest;
 use crate::xml::{Tag, Xml};
+use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 use durer_scene::scene::MatrixOp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -113,6 +114,10 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let (origin, target) = (point("origin")?, point("target")?);
             let forward = (target - origin).try_normalize();
             let up = if tag.get("up").is_some() { point("up")? } else { DVec3::ZERO };
+            if let (Some(written), true) = (tag.get("up"), up == DVec3::ZERO) {
+                let warning = Diagnostic::warning("`up` is 0 0 0: the picture has an arbitrary rotation");
+                loader.report.push(warning.code("bad-value").at(written.at).help("write `up=\"0, 1, 0\"`"));
+            }
             // If `up` is missing, use the first axis of Mitsuba's basis around the view direction.
             let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());

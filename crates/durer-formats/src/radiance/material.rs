@@ -8,7 +8,7 @@ use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, MaterialKind, PatternEffect};
 use super::distribution::DirectionalDistribution;
 use super::state::Reader;
-use durer_diag::Span;
+use durer_diag::{Diagnostic, Span};
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::mix::Mix;
@@ -253,6 +253,10 @@ impl Reader<'_> {
                         at,
                         "the maximum radius of a `glow` has no counterpart: surfaces at any distance are illuminated",
                     );
+                }
+                if kind == "light" && color == Vec3::ZERO {
+                    let warning = Diagnostic::warning("this `light` emits nothing: its radiance is 0 0 0");
+                    report.push(warning.code("black-light").at(at));
                 }
                 if let Some(spread) = above.spread.clone() {
                     return ConvertedModifier {

@@ -8,6 +8,7 @@ use super::reader::{Emission, Reader};
 use super::stage::Prim;
 use crate::panorama;
 use crate::pictures::{asset, picture_error};
+use durer_diag::Diagnostic;
 use durer_scene::describe::FileName;
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
 use durer_scene::math::{Vec3, fp};
@@ -126,7 +127,14 @@ impl Reader<'_, '_> {
         let has_temperature = has_temperature.iter().any(|name| self.boolean(prim, name) == Some(true));
         let temperature = self.input(prim, "colorTemperature").unwrap_or(6500.0).clamp(1000.0, 10_000.0);
         let spectrum = has_temperature.then(|| format!("{temperature}K"));
-        (radiance.min_element() >= 0.0 && radiance.max_element() > 0.0).then(|| (radiance.as_vec3(), spectrum))
+        let shines = radiance.min_element() >= 0.0 && radiance.max_element() > 0.0;
+        if !shines {
+            let cause = if intensity <= 0.0 { "`inputs:intensity` is not above 0" } else { "`inputs:color` is black" };
+            let message = format!("the light `{}` emits nothing: {cause}", prim.name());
+            let diagnostic = Diagnostic::warning(message).code("black-light").at(prim.span());
+            self.stage.files.report.push(diagnostic.help("give the light an intensity and a colour above 0"));
+        }
+        shines.then(|| (radiance.as_vec3(), spectrum))
     }
 
     fn distant_light(&mut self, prim: &Prim, radiance: Vec3, spectrum: Option<String>, to_world: DAffine3) {

@@ -106,6 +106,13 @@ fn scene(input: &ReadInput, report: &SharedReport, limits: &ResourceLimits) -> O
     if objects.is_empty() && !report.has_errors() {
         report.push(no_surfaces(&invisible));
     }
+    if let (Some((first, ..)), false) = (invisible.first(), objects.is_empty()) {
+        let message = match invisible.len() {
+            1 => "this prim is left out: it is not visible in renders".to_string(),
+            count => format!("this prim and {} others are left out: they are not visible in renders", count - 1),
+        };
+        report.push(Diagnostic::note(message).code("left-out").at(*first));
+    }
     scene.root = Some(Group { objects }).filter(|root| !root.objects.is_empty());
     Some(scene)
 }

@@ -40,8 +40,18 @@ fn report_missing_order(stage: &Stage, prim: &Prim) {
     else {
         return;
     };
-    let message = format!("`{first}` of `{}` has no effect, because the prim has no `xformOpOrder`", prim.name());
-    let help = format!("add `uniform token[] xformOpOrder = [\"{first}\"]`, which lists all operations in order");
+    let mut all: Vec<String> =
+        names.iter().filter(|name| name.starts_with("xformOp:")).map(|name| format!("\"{name}\"")).collect();
+    // The usual order, in which the first operation is the outermost.
+    let rank = |name: &String| ["translate", "rotate", "orient", "scale"].iter().position(|kind| name.contains(kind));
+    all.sort_by_key(|name| rank(name).unwrap_or(usize::MAX));
+    let (what, have) = match all.len() {
+        1 => (format!("`{first}` of `{}`", prim.name()), "has"),
+        count => (format!("the {count} transforms of `{}`", prim.name()), "have"),
+    };
+    let message = format!("{what} {have} no effect, because the prim has no `xformOpOrder`");
+    let order = all.join(", ");
+    let help = format!("add `uniform token[] xformOpOrder = [{order}]`, which lists all operations in order");
     stage.files.report.push(Diagnostic::warning(message).code("missing-field").at(prim.span()).help(help));
 }
 

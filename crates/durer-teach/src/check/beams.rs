@@ -7,6 +7,7 @@ use super::lights::{description, no_contribution, none_contributes};
 use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot, spread_direction};
 use durer_diag::Diagnostic;
+use durer_scene::camera::Projection as _;
 use durer_scene::light::{Illuminate as _, Light, PhotometricLight};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
@@ -49,6 +50,11 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
             ),
         };
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
+        if let Some(wall) = wall_before(scene_probe, point, middle) {
+            let name = scene_probe.object(wall);
+            let help = format!("the {name} is between the light and the visible objects: move the light to their side");
+            return diagnostic.related(scene_probe.object_span(wall), "this object is in between").help(help);
+        }
         if !reaches(scene_probe, light, to, to) {
             return turned_over(scene_probe, diagnostic, light, to);
         }
@@ -58,6 +64,19 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
             None => diagnostic.help(help),
         }
     })
+}
+
+/// Returns the large object that blocks the way from a light to the visible objects, for example a
+/// floor above the light.
+fn wall_before(scene_probe: &SceneProbe, from: Vec3, to: Vec3) -> Option<u32> {
+    let world = scene_probe.world();
+    let ray = durer_scene::math::Ray { t_max: 0.9, ..durer_scene::math::Ray::new(from, to - from) };
+    let hit = world.closest(&ray, &mut ())?;
+    let shown = scene_probe.hits().filter(|(_, seen)| seen.object == hit.object).count();
+    let eye = world.camera().pose().center;
+    let way = durer_scene::math::Ray { t_max: 1.0, ..durer_scene::math::Ray::new(from, eye - from) };
+    let separates = world.closest(&way, &mut ()).is_some_and(|other| other.object == hit.object);
+    (separates && shown * 10 > scene_probe.probes.len() && !scene_probe.is_glass(hit.object)).then_some(hit.object)
 }
 
 /// Returns true if a photometric light with a given direction would reach the objects, which are in
@@ -203,6 +222,13 @@ pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
             .collect();
         let grazing = along.iter().filter(|cosine| cosine.abs() < 0.15).count() * 10 > along.len() * 7;
         let large = along.len() * 4 > scene_probe.hits().count();
+        // A light that is far from everything is too faint, not too near.
+        let bounds = scene_probe.world().bounds();
+        let off = (bounds.center() - point.position).length();
+        let is_far = !bounds.is_empty() && off > 10.0 * bounds.size().max_element();
+        if is_far {
+            continue;
+        }
         if away.is_empty() || !grazing || !large || near > 0.03 * away[away.len() / 2] || bright * 5 > lit.len() {
             continue;
         }

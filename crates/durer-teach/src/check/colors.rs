@@ -96,6 +96,11 @@ struct ColorField {
     most: f32,
 }
 
+/// Returns true if the strength of a light is in candela, lumens or lux.
+fn has_unit(light: &Light) -> bool {
+    light.with_unit_color().color() != light.color()
+}
+
 fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
     let mut colors = Vec::new();
     for (i, material, used) in phongs(scene_probe) {
@@ -138,16 +143,13 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
     {
         // A light with attenuation may be strong as long as not too much of its light arrives.
         // Lights in candela rarely have values near 1.
-        let (fades, candela) = match light {
-            Light::Directional(_) => (false, false),
-            Light::Point(point) => (point.attenuation.is_some(), false),
-            Light::Spot(_) | Light::Photometric(_) => (true, true),
-        };
+        let candela = light.cone().is_some() || light.profile().is_some();
+        let fades = candela || super::shapes::point(light).is_some_and(|point| point.attenuation.is_some());
         let arrives =
             scene_probe.hits().filter_map(|(_, hit)| hit.contribution(number)).map(|lit| lit.unoccluded.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
         // Path tracing has no fixed unit of light because the exposure scales it.
-        let free = candela || fades && !too_much || scene_probe.is_physical();
+        let free = candela || has_unit(&material.value) || fades && !too_much || scene_probe.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(ColorField { color: light.color(), block: material.span, fields: ["color", "color"], most });
     }
@@ -157,7 +159,7 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
 /// Reports colours whose channels range from 0 to 255.
 pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
+    let mut say = |color: Color, place: Option<Span>, block: Option<Span>, is_light: bool| {
         // Whole numbers are probably byte values if some of them are large.
         let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
@@ -168,6 +170,7 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
         let message = format!("the colour {} is {}above 1", vector(color), if far { "far " } else { "" });
         let diagnostic = Diagnostic::warning(message)
             .effect(match far {
+                true if is_light => "most of what it lights, or the background itself, is white or a saturated colour",
                 true => "the result is white or a saturated colour under any light",
                 false => {
                     "the surface reflects more light than it receives, so bright parts are clipped and lose their \
@@ -180,12 +183,17 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
                     vector(color / 100.0),
                     vector(mended)
                 ),
+                true if is_light => format!(
+                    "colours range from 0 to 1: write `{}` if the colour is in bytes, or add an attenuation if the \
+                     light should be this strong",
+                    vector(mended)
+                ),
                 true => format!("colours range from 0 to 1, not to 255: write `{}`", vector(mended)),
                 false => format!("colours range from 0 to 1: try `{}`", vector(mended)),
             });
         let diagnostic = match place {
             // Only byte values have an obvious correction.
-            Some(place) if bytes && !percent => diagnostic.at(place).fix(place, vector(mended)),
+            Some(place) if bytes && !percent && !is_light => diagnostic.at(place).fix(place, vector(mended)),
             Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
         };
@@ -195,15 +203,17 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     for ColorField { color, block, fields, .. } in beyond.take(MAX_FINDINGS) {
         let written =
             scene_probe.model_format().and_then(|_| super::written::place_of_color(scene_probe, block, color));
-        say(color, written.or_else(|| scene_probe.field_span(block, &fields)), Some(block));
+        let is_light = fields == ["color", "color"];
+        say(color, written.or_else(|| scene_probe.field_span(block, &fields)), Some(block), is_light);
     }
     let background = &scene_probe.input.scene.background;
     for (color, fields) in
         [(background.color, ["color", "color"]), (background.ambient_light, ["ambientLight", "ambient_light"])]
     {
-        if color.max_element() > 2.0 && !scene_probe.is_physical() {
+        // With an exposure, colours need not be in the range of the display.
+        if color.max_element() * scene_probe.input.exposure > 2.0 && !scene_probe.is_physical() {
             let block = background_span(scene_probe);
-            say(color, block.and_then(|block| scene_probe.field_span(block, &fields)), block);
+            say(color, block.and_then(|block| scene_probe.field_span(block, &fields)), block, true);
         }
     }
     findings

@@ -21,6 +21,10 @@ pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
                 true => "no light reaches the visible surfaces".into(),
                 false => "this light contributes nothing to the picture".into(),
             });
+            if is_only_light(scene_probe) {
+                (finding.diagnostic.severity, finding.affects_whole_picture) = (Severity::Warning, true);
+                finding.diagnostic.effect = Some("nothing else emits light, so the picture is black".into());
+            }
             let strength = finding.diagnostic.span.and_then(|span| super::attenuation::strength(scene_probe, span));
             let value = strength.filter(|(field, _)| finding.diagnostic.message.contains(&format!("`{field}`")));
             if let Some((field, value)) = value {
@@ -191,8 +195,10 @@ fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
         return;
     }
     let suggestion = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
-    finding.diagnostic.help = Some(match count {
-        1 => "material indices start at 0: write 0".into(),
+    let unused = super::names::unused_materials(scene_probe);
+    finding.diagnostic.help = Some(match (count, &unused[..]) {
+        (1, _) => "material indices start at 0: write 0".into(),
+        (_, [one]) => format!("material indices start at 0: use 0 to {}; only material {one} is not used", count - 1),
         _ => format!("material indices start at 0: use 0 to {}", count - 1),
     });
     let only = count == 1 || index.parse() == Ok(count);
@@ -201,14 +207,18 @@ fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Corrects all indices if no object uses material 0 and some object uses the index after the last
-/// one. This means that the indices start at 1.
+/// Corrects all indices if no object and no pattern uses material 0, all other materials are used,
+/// and some object uses the index after the last one. This means that the indices start at 1.
 fn from_one(scene_probe: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scene_probe.input.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
     let uses: Vec<(Span, usize)> =
         uses.into_iter().flatten().filter_map(|value| Some((value, scene_probe.text(value).parse().ok()?))).collect();
-    if count < 2 || uses.iter().any(|(_, index)| *index == 0) || !uses.iter().any(|(_, index)| *index == count) {
+    let parts = scene_probe.input.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "materialIndex"));
+    let has_patterns = parts.is_some_and(|parts| !parts.is_empty());
+    let is_used = |index: usize| uses.iter().any(|(_, used)| *used == index);
+    let is_shifted = !is_used(0) && (1..=count).all(is_used) && uses.iter().all(|(_, index)| *index <= count);
+    if count < 2 || has_patterns || !is_shifted {
         return false;
     }
     finding.diagnostic.help = Some(

@@ -99,7 +99,7 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
     if bounds.is_empty() {
         return Vec::new();
     }
-    if let Some(finding) = part_of_one_object(scene_probe, &sizes) {
+    if let Some(finding) = part_of_one_object(scene_probe, &sizes).or_else(|| angle_in_radians(scene_probe, &sizes)) {
         return vec![finding];
     }
     if sizes.iter().any(|size| *size < 3.0 * larger) {
@@ -107,15 +107,15 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let radians = |angle: f32| angle <= std::f32::consts::PI;
     match scene_probe.world().camera() {
-        Camera::Perspective(camera) if camera.angle < 5.0 => {
+        camera if field_of_view(camera).is_some_and(|angle| angle < 5.0) => {
+            let angle = field_of_view(camera).unwrap_or_default();
             // A telescope is meant to show distant objects.
             let Some(size) = pixels(scene_probe, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
-            let degrees = camera.angle.to_degrees();
-            let mut diagnostic =
-                Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
-                    .effect(format!("less than 1/{} of the scene's width is visible", number((size / larger).floor())))
-                    .help("use a larger angle: angles are in degrees, and 30 to 60 degrees are usual");
-            if let Some(place) = scene_probe.field_span(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
+            let degrees = angle.to_degrees();
+            let mut diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+                .effect(format!("less than 1/{} of the scene's width is visible", number((size / larger).floor())))
+                .help("use a larger angle: angles are in degrees, and 30 to 60 degrees are usual");
+            if let Some(place) = scene_probe.field_span(span, &["angle", "fov"]).filter(|_| radians(angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
                 diagnostic = diagnostic.fix(place, number(whole)).help(format!(
                     "angles are in degrees; if this value is in radians, it is {} degrees: try `{whole}`",
@@ -147,41 +147,84 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// Reports a very narrow field of view that a part of one object fills, while other objects are
 /// outside it.
 fn part_of_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
-    let Camera::Perspective(camera) = scene_probe.world().camera() else { return None };
+    let angle = field_of_view(scene_probe.world().camera())?;
     let objects = scene_probe.world().objects();
     let first = scene_probe.hits().next()?.1.object;
     let whole = scene_probe.probes.iter().all(|probe| probe.hit.as_ref().is_some_and(|hit| hit.object == first));
     let outside = scene_probe.visibilities().iter().zip(objects);
     let outside = outside.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
     let part = sizes.iter().all(|size| *size > 3.0 * scene_probe.larger_side());
-    if camera.angle >= VERY_NARROW || !whole || !part || outside == 0 || objects[first as usize].bounds().is_none() {
+    if angle >= VERY_NARROW || !whole || !part || outside == 0 || objects[first as usize].bounds().is_none() {
         return None;
     }
-    let degrees = camera.angle.to_degrees();
-    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
+    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
         .effect(format!(
             "a part of one object fills the picture, and {} outside the picture",
             super::finding::counted(outside, "object is", "objects are")
         ))
-        .help(format!(
-            "angles are in degrees, and 30 to 60 degrees are usual; if this value is in radians, it is {} degrees",
-            number(degrees)
-        ));
+        .help(radians_help(scene_probe, angle));
     let span = scene_probe.input.scene.camera_span;
+    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
+}
+
+/// Returns the field of view across the larger side of the picture, in degrees, of a camera that has
+/// a single eye and shows straight lines as straight lines.
+fn field_of_view(camera: &Camera) -> Option<f32> {
+    match camera {
+        Camera::Perspective(camera) => Some(camera.angle),
+        Camera::ThinLens(camera) => Some(camera.angle),
+        Camera::Pinhole(camera) => Some(camera.angle),
+        _ => None,
+    }
+}
+
+/// Returns help about a field of view that may be in radians, in the words of the scene's format.
+fn radians_help(scene_probe: &SceneProbe, angle: f32) -> String {
+    let degrees = number(angle.to_degrees());
+    match scene_probe.model_format().map(|format| format.name) {
+        Some("glTF") => "`yfov` is in radians, and 0.5 to 1 is usual".into(),
+        Some("OpenUSD") => "use a smaller `focalLength`, or a larger aperture".into(),
+        _ => format!(
+            "angles are in degrees, and 30 to 60 degrees are usual; if this value is in radians, it is {degrees} degrees"
+        ),
+    }
+}
+
+/// Smallest and largest angle that can be a usual field of view in radians.
+const RADIANS: std::ops::Range<f32> = 0.2..2.1;
+
+/// Reports a field of view that is a usual angle in radians, and in degrees cuts off what is in
+/// front of the camera.
+fn angle_in_radians(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
+    let angle = field_of_view(scene_probe.world().camera())?;
+    let objects = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
+    let outside = objects.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let is_cut = sizes.iter().any(|size| *size > 1.5 * scene_probe.larger_side());
+    if !RADIANS.contains(&angle) || angle.fract() == 0.0 || outside == 0 && !is_cut {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+        .effect("the picture shows only a tiny part of what is in front of the camera")
+        .help(radians_help(scene_probe, angle));
+    let span = scene_probe.input.scene.camera_span;
+    let diagnostic = match scene_probe.field_span(span, &["angle", "fov"]) {
+        Some(place) => diagnostic.fix(place, number(angle.to_degrees().round())),
+        None => diagnostic,
+    };
     Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
 }
 
 /// Reports a narrow field of view that one object fills while most other objects are outside it.
 fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
-    let Camera::Perspective(camera) = scene_probe.world().camera() else { return None };
+    let angle = field_of_view(scene_probe.world().camera())?;
     let visibilities = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
     let out =
         visibilities.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
     let filled = sizes.iter().all(|size| *size > 0.9 * scene_probe.larger_side());
-    if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
+    if angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
         return None;
     }
-    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
+    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
         .effect(match sizes.len() {
             1 => format!("one object fills the picture, and {out} are outside it"),
             n => format!("{n} objects fill the picture, and {out} are outside it"),

@@ -62,7 +62,13 @@ pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     shown.sort_by(f32::total_cmp);
     let is_dim = shown.get(shown.len() / 2).is_some_and(|brightness| *brightness < DIM);
     if left > MAX_LEFT || !is_dim {
-        return Vec::new();
+        let is_lit = scene_probe.world().lights().iter().any(|light| light.cone().is_some());
+        let diagnostic = Diagnostic::note("this fog only absorbs light: its `color` is 0 0 0")
+            .effect("the fog itself is black, and beams of light in it are invisible")
+            .help("for white fog, write `color 1 1 1`, the fraction of light that the fog scatters");
+        let value = scene_probe.field_span(written.span, &["color"]);
+        let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, "1 1 1"), written.span, &["color"]);
+        return if is_lit { vec![Finding::from(diagnostic)] } else { Vec::new() };
     }
     let diagnostic = Diagnostic::warning("this fog scatters no light: its `color` is 0 0 0, so it only absorbs light")
         .effect(format!(

@@ -213,7 +213,7 @@ pub(super) fn tiny(scene_probe: &SceneProbe) -> Vec<Finding> {
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
         // A mesh with many triangles is not meant to be a dot.
-        let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
+        let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 2.5 };
         let size = pixels(scene_probe, bounds).filter(|size| *size < least)?;
         let looked = super::visibility::rays_to(scene_probe, bounds.center());
         (!looked.is_empty() && scene_probe.visibilities()[index] != Visibility::Outside).then_some((

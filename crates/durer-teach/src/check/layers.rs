@@ -44,11 +44,15 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let say = |(number, material, m): Layered| {
-        if scene_probe.material_rays()[number] == 0 {
+        // The reader reports a black light of Radiance.
+        let is_light = ["light", "glow", "illum", "spotlight"].contains(&scene_probe.text(material.span).as_str());
+        if scene_probe.material_rays()[number] == 0 || is_light {
             return None;
         }
         let base = m.base_weight * m.base_color.max_element();
-        let textured = m.base_color_texture.is_some() || m.base_spectrum.is_some();
+        // The texture is multiplied by the colour.
+        let is_factor = m.base_color.max_element() > BLACK;
+        let textured = m.base_color_texture.is_some() && is_factor || m.base_spectrum.is_some();
         let reflection = m.specular_weight * m.specular_color.max_element();
         let skin = reflection > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
         if let Some((words, message, help)) = absorbing_layer(m) {

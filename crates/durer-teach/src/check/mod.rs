@@ -107,7 +107,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("dark-colors", &["too-dark", "black-material"]),
     ("NODE_NO_SCENE", &["unused-material"]),
     ("repeated", &["light-behind", "light-blocked", "light-faint", "too-dark", "unused-material"]),
-    ("black-light", &["same-color", "too-dark", "one-color"]),
+    ("black-light", &["same-color", "too-dark", "one-color", "no-emitter", "mostly-black"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
     ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),
@@ -251,7 +251,11 @@ fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
         Severity::Note => 4,
     };
     // Errors keep their order because the first one may cause the others.
-    let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
+    // An element that is not closed contains those after it.
+    let rank = |finding: &Finding| match level(finding) {
+        0 => usize::from(finding.diagnostic.code != "unclosed"),
+        _ => table::rank(finding.diagnostic.code),
+    };
     findings.sort_by_key(|finding| (level(finding), rank(finding)));
     let mut reported: Vec<(u8, &str)> = Vec::new();
     findings.sort_by_cached_key(|finding| {

@@ -71,10 +71,16 @@ pub(super) fn name_materials(scene_probe: &SceneProbe, mut finding: Finding) -> 
         while let Some(at) = text[from..].find("material ").map(|at| from + at + "material ".len()) {
             let digits = text[at..].bytes().take_while(u8::is_ascii_digit).count();
             let number = text[at..at + digits].parse().ok();
-            if let Some(name) = number.and_then(|number| material_name(scene_probe, number)) {
-                text.replace_range(at..at + digits, &name);
+            let name = number.and_then(|number| material_name(scene_probe, number));
+            match name {
+                Some(name) => text.replace_range(at..at + digits, &name),
+                // Materials of models have no numbers.
+                None if digits > 0 && scene_probe.model_format().is_some() => {
+                    text.replace_range(at - "material ".len()..at + digits, "this material");
+                }
+                None => {}
             }
-            from = at;
+            from = at.min(text.len());
         }
     };
     let diagnostic = &mut finding.diagnostic;

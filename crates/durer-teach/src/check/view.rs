@@ -56,6 +56,11 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         // The scene is visible through clear glass, and objects under water get no direct light.
         let is_clear = scene_probe.is_glass(object) && scene_probe.input.job.settings.bounces > 0;
         if is_clear && !walls && !wrong && (!dark || contains_objects(scene_probe, object)) {
+            findings.push(inside_glass(scene_probe, object));
+            continue;
+        }
+        if own == 0 && super::visibility::hides_backs_of(scene_probe, object) {
+            findings.push(inside_hidden_backs(scene_probe, object));
             continue;
         }
         let swallowed = wrong || is_alone(scene_probe, object);
@@ -93,6 +98,26 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
     }
     findings
+}
+
+/// Returns a note about a camera inside a transparent object, which may be intentional.
+fn inside_glass(scene_probe: &SceneProbe, object: u32) -> Finding {
+    let name = scene_probe.object(object);
+    let diagnostic = Diagnostic::note(format!("the camera is inside the {name}, which is transparent"))
+        .related(scene_probe.object_span(object), "the object around the camera")
+        .effect("everything is seen through its surface from inside, so the object itself is hardly visible")
+        .help("if the camera should not be inside, make the object smaller or move the camera out of it");
+    Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]))
+}
+
+/// Returns a warning about a camera inside an object whose backs are hidden.
+fn inside_hidden_backs(scene_probe: &SceneProbe, object: u32) -> Finding {
+    let name = scene_probe.object(object);
+    let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
+        .related(scene_probe.object_span(object), "the object around the camera")
+        .effect("the object is invisible: its surface is hidden from behind")
+        .help("move the camera out of the object, or make the material double-sided");
+    Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]))
 }
 
 /// Returns true if the centre of another bounded object is inside an object.

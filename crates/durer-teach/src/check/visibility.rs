@@ -4,7 +4,9 @@ use super::probes::{CheckInput, ProbeGrid};
 use super::shapes::triangle;
 use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
+use durer_scene::material::principled::Backs;
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
+use durer_scene::scene::Material;
 
 /// Visibility of an object in the picture: seen, hidden by another object, or outside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +74,13 @@ fn is_first(input: &CheckInput, ray: &Ray, number: u32) -> bool {
 /// Returns true if the render ignores the backs of some surfaces. Only path tracing does.
 fn hides_backs(input: &CheckInput) -> bool {
     input.world.hides_backs() && input.job.method.path_options().is_some()
+}
+
+/// Returns true if the material of an object hides its backs.
+pub(super) fn hides_backs_of(grid: &ProbeGrid, object: u32) -> bool {
+    let material = grid.world().objects()[object as usize].material as usize;
+    let written = grid.input.scene.materials.get(material).map(|material| &material.value);
+    hides_backs(&grid.input) && matches!(written, Some(Material::Principled(layers)) if layers.backs == Backs::Hidden)
 }
 
 /// Returns a camera ray that starts behind the hidden backs of surfaces in front of it.
