@@ -1,7 +1,8 @@
-//! `cargo xtask manual`: writes the language reference with its pictures, and a grammar for
-//! editors, from the descriptions in the code.
+//! `cargo xtask manual`: writes the language reference with its pictures and a grammar for editors
+//! from the descriptions in the code, and the pictures of the tutorial from its pages.
 
 mod python;
+mod tutorial;
 
 use anyhow::{Context, Result, bail};
 use durer::format::course::reference::{Chapter, Entry, Spelling, dialect_names, entries};
@@ -41,6 +42,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         }
     }
     println!("wrote {}", pictures().display());
+    tutorial::render_pictures(&durer, &docs().join("tutorial"))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -14,10 +14,13 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// Folders with pages of the book.
+const FOLDERS: [&str; 4] = ["docs", "docs/coming", "docs/language", "docs/tutorial"];
+
 /// Returns the README and all pages of the book.
 fn pages() -> Vec<String> {
     let mut pages = vec!["README.md".to_string(), "crates/durer-cli/README.md".to_string()];
-    for folder in ["docs", "docs/language"] {
+    for folder in FOLDERS {
         let names = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().file_name());
         let names = names.map(|name| format!("{folder}/{}", name.to_string_lossy()));
         pages.extend(names.filter(|name| name.ends_with(".md") && name != "docs/lecture.md"));
@@ -38,6 +41,16 @@ fn commands(page: &str) -> Vec<String> {
         command.starts_with("live ") || command.contains("--device gpu") || command.contains("--terminal")
     };
     commands.filter(|command| !has_own_tests(command) && *command != "lesson monday.md").map(str::to_string).collect()
+}
+
+/// Returns the scenes of a page: fenced blocks that begin with a comment that names their file.
+fn scenes(page: &str) -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(root().join(page)).unwrap();
+    let blocks = text.split("\n```\n").skip(1).step_by(2);
+    let name = |block: &str| {
+        block.lines().next()?.strip_prefix("# ").filter(|name| name.ends_with(".txt")).map(str::to_string)
+    };
+    blocks.filter_map(|block| Some((name(block)?, block.to_string()))).collect()
 }
 
 /// Files that pages refer to but do not create. `scene.txt` and `model.glb` are generated from a
@@ -81,6 +94,7 @@ fn every_command_of_the_book_runs() {
             .unwrap();
         std::fs::copy(root().join("scenes/sphere.txt"), folder.path().join("scene.txt")).unwrap();
         STAND_INS.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
+        scenes(&page).iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
         let commands = commands(&page);
         if commands.iter().any(|command| command.contains("model.glb")) {
             assert!(durer(folder.path(), "convert scene.txt -o model.glb").status.success());
@@ -109,10 +123,7 @@ fn every_command_of_the_book_runs() {
 
 #[test]
 fn links_of_the_pages_are_valid() {
-    let docs = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    let language = std::fs::read_dir(root().join("docs/language")).unwrap().map(|entry| entry.unwrap().path());
-    let pages = docs.chain(language).chain([root().join("README.md")]);
-    for page in pages.filter(|path| path.extension().is_some_and(|e| e == "md")) {
+    for page in pages().into_iter().chain(["docs/lecture.md".into()]).map(|page| root().join(page)) {
         let text = std::fs::read_to_string(&page).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let file = link.split('#').next().unwrap_or_default();
