@@ -64,7 +64,7 @@ luminaire. --samples is then the number of samples for the background [default: 
 
 --weather replaces all light of the scene by the sun and the sky of a weather file (EnergyPlus .epw or Radiance .wea), with
 Perez's sky for each row, and prints figures over the hours of use (--occupied, --weekdays): the daylight autonomy, which is
-the share of these hours with at least --target lux, the continuous daylight autonomy, the shares of useful daylight between
+the share of these hours with at least --target-lux, the continuous daylight autonomy, the shares of useful daylight between
 the limits of --useful, the mean illuminance, and the hours with direct sunlight of at least 1000 lux. For each grid, it
 prints sDA, the share of points with an autonomy of at least 50 %, and ASE, the share with more than 250 hours of direct
 sunlight. --hours writes the illuminances of all rows. --sky-hour measures one hour instead. North is -z and east is x, or

@@ -9,6 +9,7 @@ Matrix-based Methods, 2017: the direct part of the sunlight in the patches is re
     python daylight.py DURER [--table FILE] [--fast]
 """
 
+import datetime
 import json
 import math
 import os
@@ -100,6 +101,22 @@ def matrix(data):
     return values.astype(np.float64) @ WEIGHTS
 
 
+def to_sun(month, day, hour):
+    """Returns the direction to the sun in 2001, x east and y north, by the Astronomical Almanac's low precision formulas.
+
+    gendaymtx computes it without the year, by a simpler formula that differs by up to half a degree.
+    """
+    n = (datetime.datetime(2001, month, day) - datetime.datetime(2000, 1, 1)).days - 0.5 + (hour - ZONE) / 24
+    mean, anomaly = 280.460 + 0.9856474 * n, math.radians(357.528 + 0.9856003 * n)
+    along = math.radians(mean + 1.915 * math.sin(anomaly) + 0.020 * math.sin(2 * anomaly))
+    lean = math.radians(23.439 - 0.0000004 * n)
+    x, y, z = math.cos(along), math.cos(lean) * math.sin(along), math.sin(lean) * math.sin(along)
+    turn = math.radians(15 * (6.697375 + 0.0657098242 * n + hour - ZONE) + LONGITUDE)
+    south, east = x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)
+    sine, cosine = math.sin(math.radians(LATITUDE)), math.cos(math.radians(LATITUDE))
+    return east, cosine * z - sine * south, sine * z + cosine * south
+
+
 def suns(folder):
     """Returns the directions of the suns of a year by the minute of the year, from the file of gendaymtx."""
     text = (folder / "suns.rad").read_text()
@@ -107,7 +124,7 @@ def suns(folder):
     return {int(found[0]): [float(word) for word in found[1:]] for found in re.findall(pattern, text, re.S)}
 
 
-def radiance_year(folder, fast):
+def radiance_year(folder, rows, fast):
     """Returns the illuminances of all rows and sensors by Radiance."""
     (folder / "room.rad").write_text(ROOM)
     black = re.sub(r"plastic (\w+) 0 0 5 .*", r"plastic \1 0 0 5 0 0 0 0 0", ROOM)
@@ -124,9 +141,20 @@ def radiance_year(folder, fast):
     whole = flux("room.rad", [])
     print(f"rfluxmtx: {time.time() - start:.0f} s", file=sys.stderr)
     direct = flux("black.rad", ["-ab", "1"])
+    by_row = direct_sun(folder, rows, points)
     day = lambda *more: matrix(run([BIN / "gendaymtx", "-m", "4", "-c", "1", "1", "1", "-of", *more, "year.wea"], folder))
     skies, sun_patches = day(), day("-d")
+    return EFFICACY * (whole @ skies - direct @ sun_patches + by_row)
+
+
+def direct_sun(folder, rows, points):
+    """Returns the irradiances of all sensors and rows by direct sunlight, from the real positions of the sun."""
     run([BIN / "gendaymtx", "-m", "1", "-u", "-D", "suns.rad", "-M", "suns.mod", "-of", "year.wea"], folder)
+    strength = suns(folder)
+    lights = [(minute, *to_sun(*rows[minute // 60][:3])) for minute in strength]
+    light = "void light s{0} 0 0 3 1 1 1\ns{0} source d{0} 0 0 4 {1:.7f} {2:.7f} {3:.7f} 0.533\n"
+    (folder / "suns.rad").write_text("".join(light.format(*one) for one in lights))
+    (folder / "suns.mod").write_text("".join(f"s{minute}\n" for minute, *_ in lights))
     octree = run([BIN / "oconv", "black.rad", "suns.rad"], folder)
     (folder / "suns.oct").write_bytes(octree)
     start = time.time()
@@ -136,20 +164,18 @@ def radiance_year(folder, fast):
         points,
     )
     print(f"rcontrib to the suns: {time.time() - start:.0f} s", file=sys.stderr)
-    names = (folder / "suns.mod").read_text().split()
-    exact = np.frombuffer(exact.split(b"\n\n", 1)[1], dtype=np.float32).reshape(len(SENSORS), len(names), 3) @ WEIGHTS
-    strength = suns(folder)
-    by_row = np.zeros((len(SENSORS), skies.shape[1]))
-    for column, name in enumerate(names):
-        minute = int(name.removeprefix("solar"))
-        by_row[:, int(minute / 60)] = exact[:, column] * strength[minute][0]
-    return EFFICACY * (whole @ skies - direct @ sun_patches + by_row)
+    exact = np.frombuffer(exact.split(b"\n\n", 1)[1], dtype=np.float32).reshape(len(SENSORS), len(lights), 3) @ WEIGHTS
+    by_row = np.zeros((len(SENSORS), len(rows)))
+    for column, (minute, *_) in enumerate(lights):
+        by_row[:, minute // 60] = exact[:, column] * strength[minute][0]
+    return by_row
 
 
-def radiance_hour(folder, row, to_sun, fast):
+def radiance_hour(folder, row, fast):
     """Returns the illuminances of the sensors in one hour, with the sky of gendaylit and `rtrace`."""
     month, day, hour, direct, diffuse = row
-    altitude, azimuth = math.degrees(math.asin(to_sun[2])), math.degrees(math.atan2(-to_sun[0], -to_sun[1]))
+    x, y, z = to_sun(month, day, hour)
+    altitude, azimuth = math.degrees(math.asin(z)), math.degrees(math.atan2(-x, -y))
     angles = ["-ang", f"{altitude:.5f}", f"{azimuth:.5f}"]
     sky = run([BIN / "gendaylit", *angles, "-W", str(direct), str(diffuse), "-g", "0.2"], folder).decode()
     sky += "\nskyfunc glow g 0 0 4 1 1 1 0\ng source s1 0 0 4 0 0 1 180\ng source s2 0 0 4 0 0 -1 180\n"
@@ -196,9 +222,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder, rows = Path(name), weather()
         write_weather(rows, folder)
-        theirs = radiance_year(folder, fast)
+        theirs = radiance_year(folder, rows, fast)
         found, ours, errors = durer_year(durer, folder, fast)
-        strength = suns(folder)
         out = []
         lit = theirs.mean(axis=0) > 1.0
         out.append(f"{lit.sum()} hours of the year have daylight.")
@@ -225,8 +250,7 @@ def main():
                   {(1, 15, 12.5), (2, 20, 10.5), (3, 21, 14.5), (4, 12, 8.5), (6, 21, 12.5), (8, 3, 16.5), (10, 10, 11.5), (12, 21, 13.5)}]
         for row in chosen:
             index = rows.index(row)
-            sun = strength.get(index * 60 + 30)
-            reference = radiance_hour(folder, row, sun[1:4], fast)
+            reference = radiance_hour(folder, row, fast)
             hour, noise = durer_hour(durer, folder, row, fast)
             out.append("| %d-%d %02d:30, %d + %d W/m² | mean of 9 | %.1f lx | %.4f | %.4f |" % (
                 row[0], row[1], int(row[2]), row[3], row[4], reference.mean(), ours[:, index].mean() / reference.mean(),

@@ -52,8 +52,9 @@ pub struct WeatherArgs {
     pub weekdays: bool,
     /// Target of the daylight autonomy [default: 300]
     #[arg(long, value_name = "LUX", value_parser = lux, requires = "weather", conflicts_with = "sky_hour")]
-    pub target: Option<f64>,
-    /// Limits of useful daylight: too little, supplementary, autonomous, too much [default: 100,300,3000]
+    pub target_lux: Option<f64>,
+    /// Limits of useful daylight: too little, supplementary, autonomous, too much [default:
+    /// 100,300,3000]
     #[arg(long, value_name = "A,B,C", value_parser = limits, requires = "weather", conflicts_with = "sky_hour")]
     pub useful: Option<[f64; 3]>,
     /// Write the illuminance of each point in each row of the weather file, as CSV
@@ -168,7 +169,11 @@ impl WeatherArgs {
     /// Returns the illuminances that the figures use.
     pub fn thresholds(&self) -> Thresholds {
         let usual = Thresholds::default();
-        Thresholds { target: self.target.unwrap_or(usual.target), useful: self.useful.unwrap_or(usual.useful), ..usual }
+        Thresholds {
+            target: self.target_lux.unwrap_or(usual.target),
+            useful: self.useful.unwrap_or(usual.useful),
+            ..usual
+        }
     }
 }
 

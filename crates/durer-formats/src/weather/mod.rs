@@ -1,7 +1,7 @@
 //! Readers of weather files: EnergyPlus weather (`.epw`) and Radiance's `.wea`.
 //!
-//! Sources: *EnergyPlus Auxiliary Programs*, chapter *Weather Converter Program*; the manual page of
-//! Radiance's `gendaymtx`.
+//! Sources: *EnergyPlus Auxiliary Programs*, chapter *Weather Converter Program*; the manual page
+//! of Radiance's `gendaymtx`.
 
 mod epw;
 mod wea;
@@ -17,8 +17,8 @@ const MAX_ROWS: usize = 366 * 24 * 60;
 const MAX_IRRADIANCE: f32 = 2000.0;
 
 /// Reads a weather file. The first word determines the format: `LOCATION` begins an EPW file, and
-/// `place` a `.wea` file. If there is an error, adds it to the diagnostics with its span and returns
-/// `None`.
+/// `place` a `.wea` file. If there is an error, adds it to the diagnostics with its span and
+/// returns `None`.
 pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Weather> {
     // Names of places can be in any encoding, but all numbers are ASCII. Replacing single bytes
     // keeps all offsets valid.

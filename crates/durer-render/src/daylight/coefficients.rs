@@ -106,8 +106,8 @@ pub(super) fn direct_sun(path: &Path, year: &SkyYear, sensor: &Sensor, seed: (u6
     year.bright.iter().map(of_hour).collect()
 }
 
-/// Returns the illuminances of a sensor in all bright intervals, for each batch of samples. `sun` is
-/// the direct sunlight.
+/// Returns the illuminances of a sensor in all bright intervals, for each batch of samples. `sun`
+/// is the direct sunlight.
 pub(super) fn illuminances(year: &SkyYear, batches: &[Coefficients], sun: &[f32]) -> Vec<Batches> {
     let by_patch = |values: fn(&Coefficients) -> &[f64]| -> Vec<Batches> {
         let patch = |patch| std::array::from_fn(|batch| values(&batches[batch])[patch] as f32);

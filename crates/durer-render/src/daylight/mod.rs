@@ -1,15 +1,15 @@
 //! Daylight of hours and years from weather files, by daylight coefficients.
 //!
-//! The daylight coefficients of a sensor are its illuminances from the patches of the sky, each with
-//! a luminance of 1 cd/m^2. One Monte-Carlo pass per sensor computes the coefficients of all
+//! The daylight coefficients of a sensor are its illuminances from the patches of the sky, each
+//! with a luminance of 1 cd/m^2. One Monte-Carlo pass per sensor computes the coefficients of all
 //! patches: paths are traced under a sky that is white in every direction, and each contribution is
 //! added to the patch from which its light comes. The illuminance of an hour is then a sum over the
 //! patches. Direct sunlight is not blurred over patches: shadow rays to the position of the sun in
 //! each hour compute it. Sunlight that the scene reflects comes from the same pass, interpolated
 //! between the patches around the sun.
 //!
-//! Sources: Tregenza and Waters, *Daylight coefficients*, Lighting Research and Technology 15, 1983;
-//! Bourgeois, Reinhart and Ward, *Standard daylight coefficient model for dynamic daylighting
+//! Sources: Tregenza and Waters, *Daylight coefficients*, Lighting Research and Technology 15,
+//! 1983; Bourgeois, Reinhart and Ward, *Standard daylight coefficient model for dynamic daylighting
 //! simulations*, Building Research and Information 36, 2008, for the separate treatment of direct
 //! sunlight.
 //!
@@ -28,7 +28,8 @@
 //!     let year = SkyYear::new(weather, SkyAxes::new(Axis::Y, 0.0), patches, 0.2);
 //!     let world = year.light(world);
 //!     let path = Path::new(&world, settings, PathOptions::default());
-//!     annual(&path, &year, &[sensor], &AnnualOptions::default(), &|_| {}).sensors[0].figures.autonomy
+//!     let found = annual(&path, &year, &[sensor], &AnnualOptions::default(), &|_| {});
+//!     found.sensors[0].figures.autonomy
 //! }
 //! ```
 

@@ -101,8 +101,8 @@ fn reflected_sunlight_agrees_with_the_closed_form() {
     for (row, hour) in weather.rows.iter().zip(&found.sensors[0].hours) {
         let Daylight::Sky(sky) = row.daylight(&weather.place) else { continue };
         let facing = sky.sun().z;
-        // The sensor sees only the wall. At noon, the wall's illuminance is that of the sun plus half
-        // that of the ground.
+        // The sensor sees only the wall. The wall's illuminance is that of the sun plus half that
+        // of the ground.
         if facing < 0.3 {
             continue;
         }
@@ -172,7 +172,7 @@ fn schedules_include_rows_by_their_middle() {
 
 #[test]
 fn figures_count_dark_and_bright_hours() {
-    // Under an open overcast sky of 5 W/m^2, about 600 lux, every hour of the day reaches the target.
+    // Under an open overcast sky of 5 W/m^2, about 600 lux, every hour of the day is bright enough.
     let sensors = [upward(Vec3::ZERO), Sensor { point: Vec3::ZERO, normal: Vec3::NEG_Y }];
     let options = AnnualOptions { schedule: Schedule { from: 0.0, to: 24.0, weekdays_only: false }, ..all_hours() };
     let found = run(scene(MATTE, NOTHING), &day(0.0, 5.0), 145, &sensors, &options);

@@ -1,5 +1,5 @@
-//! Daylight models of the sky and the sun, based on the position of the sun and either the turbidity
-//! of the air or measured irradiance. Luminances are in cd/m^2.
+//! Daylight models of the sky and the sun, based on the position of the sun and either the
+//! turbidity of the air or measured irradiance. Luminances are in cd/m^2.
 
 pub mod hosek;
 pub mod patches;
@@ -24,8 +24,8 @@ pub const SKY_WIDTH: u32 = 512;
 pub const REFLECTANCE: f32 = 0.2;
 
 described_words! {
-    /// Model of the sky: Preetham's clear sky of 1999, the clear sky of Hosek and Wilkie of 2012, or
-    /// the all-weather sky of Perez of 1993 for measured irradiance.
+    /// Model of the sky: Preetham's clear sky of 1999, the clear sky of Hosek and Wilkie of 2012,
+    /// or the all-weather sky of Perez of 1993 for measured irradiance.
     SkyModel { Preetham = "preetham", Hosek = "hosek", Perez = "perez" }
 }
 
@@ -82,10 +82,10 @@ impl Dome {
 }
 
 impl Sky {
-    /// Creates a clear sky. `sun` points to the sun, where y is up. A sun below the horizon is moved
-    /// to the horizon. `reflectance` is the fraction of the light from the sky and the sun that the
-    /// ground reflects. The default is 0.2, or with Preetham's model, a ground with a fifth of the
-    /// luminance of the zenith.
+    /// Creates a clear sky. `sun` points to the sun, where y is up. A sun below the horizon is
+    /// moved to the horizon. `reflectance` is the fraction of the light from the sky and the sun
+    /// that the ground reflects. The default is a ground with a fifth of the luminance of the
+    /// zenith.
     pub fn preetham(sun: Vec3, turbidity: f32, reflectance: Option<f32>) -> Self {
         let sky = Preetham::new(sun, turbidity);
         let above = Sky::above(Dome::Preetham(sky), sun, reflectance.unwrap_or_default());
@@ -95,8 +95,8 @@ impl Sky {
         }
     }
 
-    /// Creates a clear sky of Hosek and Wilkie; see [`Sky::preetham`]. The ground also brightens the
-    /// sky.
+    /// Creates a clear sky of Hosek and Wilkie; see [`Sky::preetham`]. The ground also brightens
+    /// the sky.
     pub fn hosek(sun: Vec3, turbidity: f32, reflectance: Option<f32>) -> Self {
         let share = reflectance.unwrap_or(REFLECTANCE);
         Sky::above(Dome::Hosek(Hosek::new(sun, turbidity, Vec3::splat(share))), sun, share)

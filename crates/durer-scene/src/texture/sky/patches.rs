@@ -10,8 +10,8 @@ use crate::math::{Vec3, fp};
 const ROWS: [u32; 7] = [30, 30, 24, 24, 18, 12, 6];
 
 /// Division of the sky above the horizon into patches of about the same solid angle. Directions are
-/// unit vectors with y up. Patches are numbered from 0, row by row from the horizon, and in each row
-/// from north (-z) through east (x). The last patch is the cap around the zenith.
+/// unit vectors with y up. Patches are numbered from 0, row by row from the horizon, and in each
+/// row from north (-z) through east (x). The last patch is the cap around the zenith.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkyPatches {
     rows: Vec<PatchRow>,

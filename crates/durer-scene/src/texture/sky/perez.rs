@@ -197,9 +197,9 @@ mod tests {
     #[test]
     fn luminances_agree_with_gendaymtx() {
         // Direction to the sun, day of the year, direct normal and diffuse horizontal irradiance;
-        // then the illuminance of the sun in lux and the luminances of Tregenza's patches 0, 15, 69,
-        // 109, 139 and 144 in cd/m^2, from `gendaymtx` of Radiance 6.0a (`-m 1 -s -c 1 1 1`, and `-D`
-        // for the sun), times 179 lm/W.
+        // then the illuminance of the sun in lux and the luminances of Tregenza's patches 0, 15,
+        // 69, 109, 139 and 144 in cd/m^2, from `gendaymtx` of Radiance 6.0a (`-m 1 -s -c 1 1 1`,
+        // and `-D` for the sun), times 179 lm/W.
         #[rustfmt::skip]
         let measured: [([f32; 3], u32, [f32; 2], f32, [f32; 6]); 10] = [
             ([0.484350, 0.277636, 0.829653], 15, [0.0, 60.0], 0.0, [1550.7, 1917.5, 2391.5, 2229.1, 2408.5, 2418.8]),
