@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Fuzz targets, with the extensions of their seed files.
-const TARGETS: [(&str, &[&str]); 25] = [
+const TARGETS: [(&str, &[&str]); 26] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -32,6 +32,7 @@ const TARGETS: [(&str, &[&str]); 25] = [
     ("usd", &["usda", "usdc", "usdz"]),
     ("xml", &["xml"]),
     ("curve", &["csv"]),
+    ("weather", &["epw", "wea"]),
     ("ies", &["ies", "ldt"]),
     ("part", &[]),
     ("ways", &[]),

@@ -92,6 +92,9 @@ const USAGE: &str = "Commands:
       CPU time to equal noise, Dürer and Mitsuba (llvm_ad_rgb), in turns.
   cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
       Cost of direct light from point lights: Dürer, Mitsuba 3's `direct`, and Blender's Cycles if the package index has it.
+  cargo xtask peers --daylight [--python PROGRAM] [--fast]
+      Compare the daylight of a year in a room with Radiance's tools, and write the table in docs/daylight.md. Without
+      --python, installs pyradiance from the package index into target/peers. --fast: fewer samples, and no table.
   cargo xtask validate [--samples N]
       Compare light with known answers, test white furnaces, and test sampled directions against their pdf. Writes
       docs/validation.md.

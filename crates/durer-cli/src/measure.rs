@@ -1,11 +1,13 @@
 //! Implements `durer measure`, which computes illuminance and irradiance at points.
 
+mod annual;
 mod enclosed;
 mod glare;
 mod grid;
 mod plan;
 mod point_list;
 mod printed;
+mod weather;
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -15,6 +17,7 @@ use crate::progress::show_progress;
 use crate::report;
 use crate::terminal::print_error_line;
 use clap::{Arg, Args};
+use durer::daylight;
 use durer::diag::Diagnostic;
 use durer::image::{Destination, save_all};
 use durer::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSettings};
@@ -29,6 +32,7 @@ use durer::world::World;
 use grid::Grid;
 use printed::Groups;
 use std::path::PathBuf;
+use weather::WeatherArgs;
 
 /// Measure illuminance and irradiance at points in a scene, as CSV with standard errors
 #[derive(Args)]
@@ -42,6 +46,8 @@ use std::path::PathBuf;
   durer measure room.txt --points places.csv
   durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
   durer measure office.txt --ugr 2,1.2,0:2,1.2,6 --json
+  durer measure room.txt --weather city.epw --grid 0,0.8,0:4,0,0:0,0,6:8x12 --plan autonomy.svg
+  durer measure room.txt --weather city.epw --sky-hour 3-21T12:30 --at 2,0.8,3
 
 A grid is given by a corner, two edges that start at the corner, and the number of points along each edge. The points are
 the centres of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
@@ -55,6 +61,14 @@ counts as a room, not as an object around the point.
 --ugr rates the glare of the luminaires, which are the surfaces with emission, by the Unified Glare Rating of CIE 117, and
 prints the background luminance in cd/m^2; --json also prints the luminance, solid angle and position index of each
 luminaire. --samples is then the number of samples for the background [default: 16384].
+
+--weather replaces all light of the scene by the sun and the sky of a weather file (EnergyPlus .epw or Radiance .wea), with
+Perez's sky for each row, and prints figures over the hours of use (--occupied, --weekdays): the daylight autonomy, which is
+the share of these hours with at least --target-lux, the continuous daylight autonomy, the shares of useful daylight between
+the limits of --useful, the mean illuminance, and the hours with direct sunlight of at least 1000 lux. For each grid, it
+prints sDA, the share of points with an autonomy of at least 50 %, and ASE, the share with more than 250 hours of direct
+sunlight. --hours writes the illuminances of all rows. --sky-hour measures one hour instead. North is -z and east is x, or
+with z up, north is y.
 
 A line of a list of points contains x,y,z or x,y,z,nx,ny,nz; a first line with names is ignored.
 
@@ -88,6 +102,8 @@ pub struct MeasureArgs {
     /// Rate the glare for an eye that looks at a point (UGR); can be given several times
     #[arg(id = "observers", long = "ugr", value_name = "EYE:TARGET", value_parser = glare::parse, allow_hyphen_values = true, conflicts_with_all = ["point", "list", "normal", "grids", "error"])]
     pub observers: Vec<[Vec3; 2]>,
+    #[command(flatten)]
+    pub weather: WeatherArgs,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -161,10 +177,14 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     options.scene_defaults.own_light = options.scene_defaults.lighting.is_none();
     let mut registry = FileRegistry::default();
     let plan = plan_target(args, &mut registry)?;
+    let hours = args.weather.hours.as_deref();
+    let hours = hours.map(|path| registry.register_output_as("--hours", path, "csv")).transpose()?;
     let listed =
         args.list.as_deref().map(|path| point_list::read(path, &mut registry)).transpose()?.unwrap_or_default();
-    let compiled = open(&args.scene, &options, args.json, &mut registry)?;
-    let up = ModelAxes::new(compiled.loaded.scene.up.unwrap_or(Axis::Y)).up.as_vec3();
+    let weather = args.weather.weather.as_deref().map(|path| weather::read(path, &mut registry)).transpose()?;
+    let mut compiled = open(&args.scene, &options, args.json, &mut registry)?;
+    let up_axis = compiled.loaded.scene.up.unwrap_or(Axis::Y);
+    let up = ModelAxes::new(up_axis).up.as_vec3();
     let lumens = compiled.world.lumens().unwrap_or(LUMINANCE);
     let normal = match args.normal.map(Vec3::try_normalize) {
         Some(None) => return Err(invalid_input("--normal must not be 0,0,0")),
@@ -181,6 +201,23 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid, or a list with --points"
         )));
     }
+    let mut year = None;
+    match (&weather, &args.weather.sky_hour) {
+        (Some(weather), Some(instant)) => {
+            let (sky, description) = weather::sky_at(weather, instant)?;
+            let axes = args.weather.axes(up_axis)?;
+            compiled.world = daylight::light_of_hour(compiled.world, &sky, &axes, args.weather.ground());
+            if !args.quiet {
+                print_error_line(&format!("note: {description}"));
+            }
+        }
+        (Some(weather), None) => {
+            let sky = args.weather.year(weather, up_axis)?;
+            compiled.world = sky.light(compiled.world);
+            year = Some((weather, sky));
+        }
+        (None, _) => {}
+    }
     let settings = RenderSettings { bounces: args.bounces, ..Job::default().settings };
     let method = args.method.0.resolve_integrator(IntegratorKind::PATH).map_err(invalid_input)?;
     let context = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
@@ -192,6 +229,15 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             return Err(invalid_input("--ugr needs --integrator path"));
         }
         return threads::install(args.threads.map(usize::from), || glare::run(args, &compiled, &path, up, lumens));
+    }
+    if let Some((weather, year)) = &year {
+        if path.photons.is_some() {
+            return Err(invalid_input("the daylight of a year needs --integrator path"));
+        }
+        let outputs = annual::Outputs { plan, hours };
+        return threads::install(args.threads.map(usize::from), || {
+            annual::run(args, &path, (weather, year), (&sensors, alone), up, &outputs)
+        });
     }
     if path.photons.is_some()
         && let Some(point) = in_the_air(&compiled.world, &sensors)
@@ -207,7 +253,8 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let measured = threads::install(args.threads.map(usize::from), || {
         show_progress("measuring", |progress| measure(&path, &sensors, &options, progress))
     });
-    let inside = enclosed::find(&compiled.world, &sensors, &measured.points);
+    let is_dark: Vec<bool> = measured.points.iter().map(|point| point.illuminance == 0.0).collect();
+    let inside = enclosed::find(&compiled.world, &sensors, &is_dark);
     let unit = if compiled.world.lumens().is_some() { "W/m^2" } else { "lux" };
     let groups =
         Groups { sensors: &sensors, points: &measured.points, inside: &inside, unit, alone, grids: &args.grid };
@@ -219,17 +266,11 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         groups.print_summaries();
     }
     if let (Some(plan), Some((grid, points))) = (plan, groups.grids().next()) {
-        save_all(&[(&plan, plan::draw(grid, &points, up).into_bytes())])?;
+        save_all(&[(&plan, printed::plan(grid, &points, up).into_bytes())])?;
         print_written_to_error(&plan, args.quiet);
     }
-    let enclosed = inside.iter().filter(|inside| **inside).count();
-    if enclosed > 0 && !args.quiet {
-        let (of, are) = (report::counted(sensors.len(), "point"), if enclosed == 1 { "is" } else { "are" });
-        let first = sensors.iter().zip(&inside).find(|(_, inside)| **inside);
-        let first = first.map_or(String::new(), |(sensor, _)| printed::vector(sensor.point));
-        let message =
-            format!("{enclosed} of {of} {are} inside an object, where no light arrives; the first is {first}");
-        report::note(&Diagnostic::warning(message).code("INSIDE"));
+    if !args.quiet {
+        enclosed::warn(&sensors, &inside);
     }
     if let Some(error) = args.error
         && let missed = measured.points.iter().filter(|point| point.error > error * point.illuminance).count()

@@ -35,7 +35,6 @@ const HINTS: &[(&[&str], &str, &str)] = &[
         "use `--stats=FILE.json` for the statistics of a render; `durer info --json` describes the scene",
     ),
     (&["--transparent", "--alpha"], "show", "pictures have no transparency: the camera sees the scene's `Background`"),
-    (&["--ugr"], "points", "UGR is not computed; `durer render --show luminance` writes the luminances it is based on"),
     (&["--jobs", "--cores"], "threads", "use `--threads 4`"),
 ];
 

@@ -223,6 +223,8 @@ fn every_command_ends_soon_after_a_signal() {
     folder.write("a.ppm", noise(4000, 1));
     folder.write("b.ppm", noise(4000, 2));
     folder.write("problem.txt", problem(60, 2000));
+    let place = "place X\nlatitude 47\nlongitude -8\ntime_zone -15\nsite_elevation 4\nweather_data_file_units 1\n";
+    folder.write("day.wea", format!("{place}6 21 12.5 400 100\n"));
     std::fs::create_dir(folder.path("photos")).unwrap();
     for i in 0..6 {
         let picture = durer::image::read(&noise(1200, i), "a.ppm").unwrap();
@@ -244,6 +246,7 @@ fn every_command_ends_soon_after_a_signal() {
         "lesson endless.txt --bounces 256 -o lesson",
         "course -input endless.txt -output o.tga -size 900 900 -bounces 250 -shadows",
         "measure scene.txt --at 0,1,0 --normal 0,1,0 --samples 16777216",
+        "measure scene.txt --at 0,1,0 --weather day.wea --samples 16777216",
         "compare a.ppm b.ppm",
         "check mesh.txt",
         "convert mesh.txt -o o.gltf",

@@ -131,7 +131,7 @@ fn terms_lead_to_words() {
         ("antialiasing", "--samples 64"),
         ("daylight factor", "docs/light.md"),
         ("transparent background", "`Background`"),
-        ("UGR", "--show luminance"),
+        ("UGR", "--ugr EYE:TARGET"),
         ("statistics", "--stats=FILE.json"),
         ("glass", "PrincipledMaterial { preset glass }"),
         ("mirror", "PrincipledMaterial { preset silver"),

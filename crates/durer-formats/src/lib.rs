@@ -55,6 +55,7 @@ mod threemf;
 #[cfg(feature = "usd")]
 mod usd;
 pub mod vol;
+pub mod weather;
 #[cfg(any(feature = "collada", feature = "mitsuba", feature = "threemf"))]
 mod xml;
 #[cfg(any(feature = "threemf", feature = "usd"))]

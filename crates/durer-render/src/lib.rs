@@ -3,6 +3,7 @@
 
 mod clock;
 pub mod compile;
+pub mod daylight;
 pub mod film;
 pub mod glare;
 pub mod integrator;

@@ -19,3 +19,4 @@ pub mod shape;
 pub mod source;
 pub mod spectrum;
 pub mod texture;
+pub mod weather;

@@ -10,7 +10,7 @@ use durer_formats::course::{ReadOptions, guess, random::SceneGenerator, read, wr
 use durer_formats::folder::FolderSource;
 use durer_formats::json::{self, Document};
 use durer_formats::scene::{ReadInput, find_scene_format, read_model};
-use durer_formats::{curve, photometry, read_mesh};
+use durer_formats::{curve, photometry, read_mesh, weather};
 use durer_image::{Encoded, ImageError, decode_linear};
 use durer_render::compile::AccelKind;
 use durer_render::integrator::{IntegratorKind, RenderSettings};
@@ -20,6 +20,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::SceneDefaults;
 use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
+use durer_scene::weather::Daylight;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -106,6 +107,22 @@ pub fn curve(data: &[u8]) {
     assert!(rows.len() > 1 && rows.is_sorted_by(|a, b| a[0] < b[0]));
     if let Some(emitter) = Curve::light(rows) {
         assert!(emitter.color().is_finite() && !emitter.at(550.0).is_nan());
+    }
+}
+
+/// Reads a weather file and checks that its skies are finite.
+pub fn weather(data: &[u8]) {
+    let mut files = Files::default();
+    let file = files.add("x.epw", data.into());
+    let mut diagnostics = Diagnostics::default();
+    let Some(weather) = weather::read(data, file, &mut diagnostics) else {
+        return assert!(diagnostics.has_errors());
+    };
+    for row in weather.rows.iter().take(100) {
+        if let Daylight::Sky(sky) = row.daylight(&weather.place) {
+            assert!(sky.sun_illuminance().is_finite() && sky.sky_illuminance().is_finite());
+            assert!(sky.relative_luminance(Vec3::Y).is_finite());
+        }
     }
 }
 
@@ -263,6 +280,7 @@ fn seeds_hold() {
                 "scene" => scene(&data),
                 "json" => json(&data),
                 "curve" => curve(&data),
+                "weather" => weather(&data),
                 "ies" => profile(&data),
                 "part" => part(&data),
                 "ways" => ways(&data),

@@ -64,9 +64,10 @@ pub use durer_diag as diag;
 pub use durer_formats as format;
 pub use durer_image as image;
 pub use durer_image::panics;
-pub use durer_render::{compile, film, glare, integrator, measure, render, threads, world};
+pub use durer_render::{compile, daylight, film, glare, integrator, measure, render, threads, world};
 pub use durer_scene::{
     bsdf, camera, describe, dialect, light, material, math, medium, sampler, scene, shape, source, spectrum, texture,
+    weather,
 };
 pub use durer_teach::{check, lesson, mistakes};
 pub use error::{Error, SceneError};

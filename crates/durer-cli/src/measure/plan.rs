@@ -1,12 +1,10 @@
 //! Plan of a measured grid: false colours, isolux lines, axes and a scale, as SVG.
 
 use super::grid::Grid;
-use super::printed::outside;
 use crate::svg::round_step;
 use durer::film::false_color::FalseColorScale;
 use durer::image::Transfer;
 use durer::math::Vec3;
-use durer::measure::{Measured, Uniformity};
 use std::fmt::Write as _;
 
 /// Length of the longer side of the plan, in SVG units.
@@ -55,10 +53,17 @@ impl Axis {
     }
 }
 
+/// Text on a plan.
+pub struct Legend {
+    /// Unit of the values.
+    pub unit: &'static str,
+    /// Line below the plan.
+    pub caption: String,
+}
+
 /// Draws a grid as seen from the side of its normal. The first edge points to the right. Points
-/// without a value are grey.
-pub fn draw(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
-    let values: Vec<f64> = points.iter().map(|point| point.map_or(f64::NAN, |point| point.illuminance)).collect();
+/// with the value NaN, which are inside objects, are grey.
+pub fn draw(grid: &Grid, values: &[f64], up: Vec3, legend: &Legend) -> String {
     let [columns, rows] = grid.counts.map(|count| count as usize);
     let [long, deep] = grid.edges.map(|edge| f64::from(edge.length()));
     let ratio = if long > 0.0 && deep > 0.0 { (deep / long).clamp(0.1, 10.0) } else { 1.0 };
@@ -96,7 +101,7 @@ pub fn draw(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
     }
     let step = round_step(f64::from(scale.high) / LINES);
     for level in (1..).map(|i| step * f64::from(i)).take_while(|level| *level < f64::from(scale.high)) {
-        let segments = isolines(&values, columns, level);
+        let segments = isolines(values, columns, level);
         if segments.is_empty() {
             continue;
         }
@@ -141,7 +146,7 @@ pub fn draw(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
         middle.1, upright.name
     ));
     let left = MARGIN + width + 25.0;
-    add(format_args!("<text x=\"{left:.2}\" y=\"{:.2}\" fill=\"#222\">lux</text>", MARGIN - 10.0));
+    add(format_args!("<text x=\"{left:.2}\" y=\"{:.2}\" fill=\"#222\">{}</text>", MARGIN - 10.0, legend.unit));
     for i in 0..64 {
         let share = f64::from(i) / 64.0;
         let value = f64::from(scale.low) + (1.0 - share) * f64::from(scale.high - scale.low);
@@ -155,19 +160,12 @@ pub fn draw(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
         let y = MARGIN + (1.0 - level / f64::from(scale.high)) * height + 4.0;
         add(format_args!("<text x=\"{:.2}\" y=\"{y:.2}\" fill=\"#222\">{}</text>", left + 24.0, level as f32));
     }
-    let outside = outside(points);
-    if let Some(figures) = Uniformity::of(&outside) {
-        let Uniformity { min, average, max } = figures;
-        let digits = if max < 100.0 { 3 } else { 1 };
-        add(format_args!(
-            "<text x=\"{MARGIN}\" y=\"{:.2}\" fill=\"#222\">average {average:.digits$}, minimum {min:.digits$}, maximum {max:.digits$} lux, \
-             U0 {:.2}, U1 {:.2}{}</text>",
-            MARGIN + height + 56.0,
-            figures.u0(),
-            figures.u1(),
-            if outside.len() < points.len() { "; grey: inside an object" } else { "" }
-        ));
-    }
+    add(format_args!(
+        "<text x=\"{MARGIN}\" y=\"{:.2}\" fill=\"#222\">{}{}</text>",
+        MARGIN + height + 56.0,
+        legend.caption,
+        if values.iter().any(|value| value.is_nan()) { "; grey: inside an object" } else { "" }
+    ));
     svg + "</svg>\n"
 }
 

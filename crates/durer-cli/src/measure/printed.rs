@@ -1,6 +1,7 @@
 //! Prints measured values as CSV, as JSON, and as figures of grids.
 
 use super::grid::Grid;
+use super::plan::{self, Legend};
 use crate::failure::Failure;
 use crate::terminal::{print_error_line, print_line};
 use durer::math::{Color, Vec3};
@@ -106,6 +107,20 @@ impl<'a> Groups<'a> {
 }
 
 /// Returns the values of the points that are not inside an object.
-pub fn outside(points: &[Option<Measured>]) -> Vec<Measured> {
+fn outside(points: &[Option<Measured>]) -> Vec<Measured> {
     points.iter().copied().flatten().collect()
+}
+
+/// Draws the plan of a grid with its figures.
+pub fn plan(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
+    let values: Vec<f64> = points.iter().map(|point| point.map_or(f64::NAN, |point| point.illuminance)).collect();
+    let caption = Uniformity::of(&outside(points)).map_or(String::new(), |figures| {
+        let Uniformity { min, average, max } = figures;
+        let digits = if max < 100.0 { 3 } else { 1 };
+        let [u0, u1] = [figures.u0(), figures.u1()];
+        format!(
+            "average {average:.digits$}, minimum {min:.digits$}, maximum {max:.digits$} lux, U0 {u0:.2}, U1 {u1:.2}"
+        )
+    });
+    plan::draw(grid, &values, up, &Legend { unit: "lux", caption })
 }

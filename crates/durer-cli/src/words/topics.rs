@@ -36,6 +36,11 @@ const TOPICS: &[(&[&str], &str)] = &[
         "`durer render --samples 64` takes 64 samples per pixel, and `--filter` sets how they are averaged",
     ),
     (
+        &["daylight autonomy", "epw", "weather", "climate", "udi", "sda", "useful daylight"],
+        "`durer measure --weather city.epw` computes daylight autonomy and useful daylight over a year; docs/daylight.md has the \
+         steps",
+    ),
+    (
         &["daylight factor", "daylight factors", "daylight"],
         "`cieSky` in `Background` sets a CIE sky and `durer measure` the illuminance inside and outside; docs/light.md has the \
          steps",
@@ -44,10 +49,7 @@ const TOPICS: &[(&[&str], &str)] = &[
         &["illuminance", "lux", "isolux", "uniformity", "irradiance"],
         "`durer measure` computes it at points and on grids, and `durer render --show illuminance` for each pixel",
     ),
-    (
-        &["ugr", "glare"],
-        "UGR is not computed; `durer render --show luminance` writes the luminances in cd/m^2 that it is based on",
-    ),
+    (&["ugr", "glare"], "`durer measure --ugr EYE:TARGET` rates the glare of luminaires for an observer"),
     (
         &["transparent background", "alpha", "alpha channel"],
         "pictures have no transparency, and the camera sees the scene's `Background`",

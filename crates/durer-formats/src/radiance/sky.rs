@@ -9,6 +9,7 @@
 use super::args::RadPrimitive;
 use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
+use durer_scene::texture::sky::perez::shape;
 use glam::{DMat3, DVec3};
 use std::f32::consts::FRAC_PI_2;
 
@@ -109,10 +110,7 @@ impl Sky {
                 let haze = if height > 0.01 { 1.0 - fp::exp(-0.32 / height) } else { 1.0 };
                 self.zenith / self.factor * (0.91 + 10.0 * fp::exp(-3.0 * angle) + 0.45 * cosine * cosine) * haze
             }
-            SkyKind::Perez([a, b, c, d, e]) => {
-                let by_height = 1.0 + a * fp::exp(b / height.max(0.01));
-                self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
-            }
+            SkyKind::Perez(coefficients) => self.zenith * shape(&coefficients, height.max(0.01), angle, cosine),
             SkyKind::Intermediate => {
                 // Angle between the direction and the zenith.
                 let eta = FRAC_PI_2 - fp::asin(height);

@@ -347,11 +347,15 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let sky = &scene.background;
     let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.sun_direction(), Ok(None)));
     let (clear, picture) = (sun && !standard, sky.environment.is_some());
+    let perez = clear && sky.sky_model == Some(SkyModel::Perez);
     let any = standard || sun || picture;
     for (word, given, has_use, wanted) in [
         ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
         ("skyModel", sky.sky_model.is_some(), clear, "clear sky (a sun without `cieSky`)"),
-        ("turbidity", sky.turbidity.is_some(), clear, "clear sky (a sun without `cieSky`)"),
+        ("turbidity", sky.turbidity.is_some(), clear && !perez, "clear sky (a sun without `cieSky`)"),
+        ("directNormal", sky.direct_normal.is_some(), perez, "sky of Perez (a sun with `skyModel perez`)"),
+        ("diffuseHorizontal", sky.diffuse_horizontal.is_some(), perez, "sky of Perez (a sun with `skyModel perez`)"),
+        ("dewPoint", sky.dew_point.is_some(), perez, "sky of Perez (a sun with `skyModel perez`)"),
         ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun or `cieSky`"),
         ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
         ("environmentScale", sky.environment_scale.is_some(), any, "`environment`, sun or `cieSky`"),

@@ -47,6 +47,21 @@ pub trait TraceListener: TraversalCounter {
     /// throughput. The throughput is the product of all factors since the camera by which the
     /// node's value, or the values of its terms, contribute to the pixel.
     fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
+    /// Receives a direction of the environment from which a path finds light.
+    fn sky(&mut self, _light: impl FnOnce() -> SkyLight) {}
+}
+
+/// Light that a path finds in a direction of the environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyLight {
+    /// Direction towards the environment in world space, of any length.
+    pub dir: Vec3,
+    /// True if the light reaches the first vertex that scatters it in many directions without a
+    /// detour. It can pass thin sheets on its way.
+    pub is_direct: bool,
+    /// Factor by which white light from the direction contributes to the radiance of the path, per
+    /// channel.
+    pub throughput: Color,
 }
 
 /// Index of a node in a trace, numbered in the order in which terms began.

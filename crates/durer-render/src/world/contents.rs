@@ -1,6 +1,6 @@
 //! Editable contents of a world and the hash that identifies them.
 
-use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
+use super::{DisplayRules, Geometry, HitRules, LightSampler, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::DialectRules;
 use durer_scene::light::{Light, PhotometricProfile};
@@ -84,6 +84,23 @@ impl World {
         self.contents.frame = CameraBasis::of(&camera, self.contents.camera_rules);
         self.contents.camera = camera;
         (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
+    }
+
+    /// Returns the world with other light: `environment` and `lights` replace the background, all
+    /// lights and the light of all surfaces.
+    pub fn with_light(mut self, environment: Option<Environment>, lights: Vec<Light>) -> World {
+        let contents = self.edit();
+        (contents.background, contents.ambient, contents.lights) = (Color::ZERO, Color::ZERO, lights);
+        for material in &mut contents.materials {
+            if let Material::Phong(phong) = material {
+                phong.emission = None;
+            }
+        }
+        (self.assets.cube_map, self.assets.environment) = (None, environment);
+        (self.assets.profiles, self.assets.illuminants) = (Vec::new(), Vec::new());
+        self.half_areas = self.empty_half_areas();
+        self.emitters = LightSampler::new(&self);
+        self
     }
 
     /// Replaces the decoded values of 8-bit codes in the textures with the given indices. The

@@ -20,7 +20,7 @@ use crate::medium::Fog;
 use crate::shape::{HeightField, MeshData, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
-use crate::texture::sky::{SKY_WIDTH, environment_map};
+use crate::texture::sky::{Irradiance, Perez, SKY_WIDTH, environment_map, perez};
 use crate::texture::{CieSky, Sky, SkyModel};
 pub use assets::{Assets, NamedTexture, PictureBytes, TextureImage};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
@@ -73,9 +73,16 @@ described! {
         time: Option<Vec3> = None, optional, Constraint::Any, ["time" in set::DURER];
         /// Offset of the local clock from UTC in hours, including daylight saving time; default 0.
         time_zone: Option<f32> = None, optional, Constraint::Within(-14.0, 14.0), ["timeZone" in set::DURER];
-        /// Model of the clear sky: Preetham's, or that of Hosek and Wilkie, which is closer to
-        /// measured skies.
+        /// Model of the sky: Preetham's clear sky, that of Hosek and Wilkie, which is closer to
+        /// measured skies, or the all-weather sky of Perez for a measured irradiance.
         sky_model: Option<SkyModel> = None, optional, Constraint::Any, ["skyModel" in set::DURER];
+        /// Irradiance from the sun on a surface that faces it, in W/m^2, for `skyModel perez`.
+        direct_normal: Option<f32> = None, optional, Constraint::Within(0.0, 1500.0), ["directNormal" in set::DURER];
+        /// Irradiance from the sky on a horizontal surface, in W/m^2, for `skyModel perez`.
+        diffuse_horizontal: Option<f32> = None, optional, Constraint::Within(0.0, 1500.0),
+            ["diffuseHorizontal" in set::DURER];
+        /// Dew point in degrees Celsius, for `skyModel perez`; default 11.
+        dew_point: Option<f32> = None, optional, Constraint::Within(-90.0, 60.0), ["dewPoint" in set::DURER];
         /// Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
         turbidity: Option<f32> = None, optional, Constraint::Positive, ["turbidity" in set::DURER];
         /// Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16
@@ -177,10 +184,27 @@ impl Background {
         self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
     }
 
-    /// Returns the clear sky if the background has a sun above the horizon and no CIE sky.
+    /// Returns the sky with a sun, if the background has a sun above the horizon and no CIE sky.
     pub fn clear_sky(&self) -> Option<Sky> {
         let sun = self.sun().filter(|_| self.cie_sky.is_none() && !self.is_night())?;
-        Some(Sky::new(self.sky_model.unwrap_or_default(), sun, self.turbidity(), self.ground_reflectance))
+        let (turbidity, ground) = (self.turbidity(), self.ground_reflectance);
+        Some(match self.sky_model.unwrap_or_default() {
+            SkyModel::Preetham => Sky::preetham(sun, turbidity, ground),
+            SkyModel::Hosek => Sky::hosek(sun, turbidity, ground),
+            SkyModel::Perez => Sky::perez(Perez::new(sun, &self.irradiance()), ground),
+        })
+    }
+
+    /// Returns the irradiance for an all-weather sky. If the background has a date, the distance
+    /// from the sun is that of the date.
+    fn irradiance(&self) -> Irradiance {
+        let day = self.date.map(|date| almanac::day_of_year(date.to_array().map(|part| part as i32)));
+        Irradiance {
+            direct_normal: self.direct_normal.unwrap_or(0.0),
+            diffuse_horizontal: self.diffuse_horizontal.unwrap_or(0.0),
+            dew_point: self.dew_point.unwrap_or(perez::DEW_POINT),
+            eccentricity: day.map_or(1.0, perez::eccentricity),
+        }
     }
 
     /// Returns the direction in which the sunlight of a clear sky travels, not normalised, and its

@@ -72,13 +72,19 @@ impl Background {
     /// # Errors
     ///
     /// Fails if the sun's position is given twice, is incomplete, or has an invalid time, if a
-    /// standard sky depends on the sun but there is no sun, or if the sky's model has no data for
-    /// the turbidity.
+    /// standard sky depends on the sun but there is no sun, if the sky's model has no data for the
+    /// turbidity, or if an all-weather sky has no irradiance.
     pub fn validate(&self) -> Result<(), String> {
         let sun = self.sun_direction()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::depends_on_sun) && sun.is_none();
         if lacks_sun {
             return Err("this `cieSky` needs the position of the sun, but the background has no `sun`".into());
+        }
+        if self.sky_model == Some(SkyModel::Perez) {
+            let lacks = [("directNormal", self.direct_normal), ("diffuseHorizontal", self.diffuse_horizontal)];
+            if let Some((word, _)) = lacks.iter().find(|(_, value)| value.is_none()) {
+                return Err(format!("`skyModel perez` needs `{word}`, an irradiance in W/m^2"));
+            }
         }
         let (low, high) = hosek::TURBIDITIES.into_inner();
         match self.sky_model == Some(SkyModel::Hosek) && !(low..=high).contains(&self.turbidity()) {

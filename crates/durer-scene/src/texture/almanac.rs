@@ -46,6 +46,13 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
+/// Returns the number of a day in its year, from 1 to 366. The date must exist, except that 29
+/// February is accepted in any year.
+pub fn day_of_year([year, month, day]: [i32; 3]) -> u32 {
+    let before: i32 = (1..month.clamp(1, 12)).map(|month| days_of(year, month)).sum();
+    (before + day).clamp(1, 366) as u32
+}
+
 /// Returns the sun's altitude above the horizon, and its azimuth from north through east, both in
 /// degrees. The place is given in degrees north and degrees east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {

@@ -26,7 +26,7 @@ impl Path<'_> {
             }
         };
         if photons > 0 {
-            let contribution = Contribution { factor: Spectrum::ONE, light, scatterings: state.depth + 1 };
+            let contribution = Contribution { factor: Spectrum::ONE, light, scatterings: state.depth + 1, sky: None };
             self.add(contribution, || TermKind::Photons { radius, photons }, state, context, output);
         }
     }

@@ -12,11 +12,14 @@ use super::vertex::{CANDIDATES, Vertex, VertexKind};
 use crate::integrator::DirectSampling;
 use crate::integrator::media::MediumStack;
 use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
-use crate::world::emitters::{LightChoice, LightSample};
+use crate::world::emitters::{LightChoice, LightId, LightSample};
 use crate::world::{PassedSurfaces, SurfaceInteraction};
-use durer_scene::math::{Color, Ray64, Vec2};
+use durer_scene::math::{Color, Ray64, Vec2, Vec3};
 use durer_scene::medium::Segment;
+use durer_scene::sampler::SampleId;
+use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::Spectrum;
+use glam::DVec3;
 
 /// Point sampled on a light, with the BSDF value and the densities for the direction from a path
 /// vertex to that point.
@@ -39,6 +42,28 @@ struct LightLiSample {
 const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
 impl Path<'_> {
+    /// Returns the fraction of the light from a direction at infinity that reaches a point, per
+    /// channel. Light passes thin sheets such as panes, but no surfaces that refract or reflect it.
+    /// `dir` and `normal` are unit vectors; `id` selects the random numbers for media.
+    pub fn visibility_of_direction(&self, point: DVec3, normal: Vec3, dir: Vec3, id: SampleId) -> Color {
+        let surface = SurfacePoint::around(point, normal);
+        let (shading, context, state) =
+            (Self::white_matte(&surface, normal), self.context(id), self.start_at(&surface, id));
+        let vertex = self.vertex(VertexKind::Surface(&surface, &shading, None), &state);
+        let light = LightSample {
+            light: LightId::Environment,
+            wi: dir,
+            reach: f32::INFINITY,
+            error: 0.0,
+            cosine: 1.0,
+            radiance: Color::ONE,
+            choice: 1.0,
+            pdf: 1.0,
+        };
+        let (visible, _) = self.visibility(&light, &vertex, &state, &context, &mut ());
+        context.lanes.color(visible * context.lanes.light(Color::ONE))
+    }
+
     /// Chooses one light for a vertex at random, or `None` if no light can reach it.
     pub(super) fn choose_light(&self, vertex: &Vertex) -> Option<LightChoice> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
@@ -74,6 +99,7 @@ impl Path<'_> {
             factor: value * (mis / pdf) * visibility,
             light: context.lanes.light_of(light.radiance, || self.world.illuminant(light.light)),
             scatterings: state.depth + 1,
+            sky: (light.light == LightId::Environment).then_some((light.wi, state.rough_bounces == 0)),
         };
         let what = || TermKind::Direct {
             light: light.light,

@@ -35,7 +35,14 @@ impl Path<'_> {
         let weight = self.hit_weight(state, is_sampled, |prev| {
             pdf * (prev.tries * emitters.chance_of_sky(self.world, &prev.receiver))
         });
-        let contribution = Contribution { factor: Spectrum::splat(weight), light, scatterings: state.depth };
+        // The previous vertex is the first one, except for panes in between.
+        let is_direct = state.rough_bounces == 1 && state.prev_vertex.is_some();
+        let contribution = Contribution {
+            factor: Spectrum::splat(weight),
+            light,
+            scatterings: state.depth,
+            sky: is_sampled.then_some((dir, is_direct)),
+        };
         self.add(contribution, || TermKind::Sky, state, context, output);
     }
 
@@ -54,7 +61,7 @@ impl Path<'_> {
         let light = context.lanes.light_of(color, || self.world.material_illuminant(at.material));
         let is_sampled = self.world.emitters().can_choose(&at.hit, at.ray.dir());
         let mis = self.hit_weight(state, is_sampled, |prev| self.pdf_of_hit(at, prev));
-        let contribution = Contribution { factor: Spectrum::splat(mis), light, scatterings: state.depth };
+        let contribution = Contribution { factor: Spectrum::splat(mis), light, scatterings: state.depth, sky: None };
         self.add(contribution, || TermKind::Emission { mis }, state, context, output);
     }
 

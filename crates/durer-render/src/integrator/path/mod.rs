@@ -143,20 +143,28 @@ impl<'w> Path<'w> {
         id: SampleId,
         listener: &mut T,
     ) -> Color {
-        let mut bsdf = Bsdf::default();
-        bsdf.push(Diffuse::lambert(Spectrum::ONE), Spectrum::ONE, 1.0);
-        let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
-        let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf, shadowing: None };
-        let context = self.context(id);
-        let nowhere = Ray64::new(surface.point(), Vec3::ZERO, 0.0, 0.0);
-        let active = PathState { camera_distance: None, ..self.start(nowhere, id) };
-        let mut stack = PathStack { active, pending: SmallVec::new() };
+        let (shading, context) = (Self::white_matte(surface, normal), self.context(id));
+        let mut stack = PathStack { active: self.start_at(surface, id), pending: SmallVec::new() };
         let mut output = PathOutput { radiance: Spectrum::ZERO, listener };
         let goes_on = self.shade(VertexKind::Surface(surface, &shading, None), &mut stack, &context, &mut output);
         if let Some(hit) = self.intersect_next(goes_on, &mut stack, output.listener) {
             self.trace_branches(hit, stack, &context, &mut output);
         }
         std::f32::consts::PI * context.lanes.color(output.radiance)
+    }
+
+    /// Returns the shading of a white matte surface with a unit shading normal.
+    fn white_matte(surface: &SurfacePoint, normal: Vec3) -> Shading<'w> {
+        let mut bsdf = Bsdf::default();
+        bsdf.push(Diffuse::lambert(Spectrum::ONE), Spectrum::ONE, 1.0);
+        let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
+        Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf, shadowing: None }
+    }
+
+    /// Returns the state of a path that starts at a surface point instead of a camera.
+    fn start_at(&self, surface: &SurfacePoint, id: SampleId) -> PathState {
+        let nowhere = Ray64::new(surface.point(), Vec3::ZERO, 0.0, 0.0);
+        PathState { camera_distance: None, ..self.start(nowhere, id) }
     }
 
     /// Returns the data that all branches of a camera path share.

@@ -2,7 +2,8 @@
 
 use super::Path;
 use super::state::{PathState, SampleContext};
-use crate::integrator::trace::{TermKind, TraceListener};
+use crate::integrator::trace::{SkyLight, TermKind, TraceListener};
+use durer_scene::math::{Color, Vec3};
 use durer_scene::spectrum::Spectrum;
 
 /// Output of tracing a path, with the sum of the radiance found so far and the trace listener.
@@ -21,6 +22,9 @@ pub(super) struct Contribution {
     pub(super) light: Spectrum,
     /// Number of scattering events between the light source and the camera.
     pub(super) scatterings: u32,
+    /// Direction of the light, if it comes from the environment, and whether it is direct; see
+    /// [`SkyLight`].
+    pub(super) sky: Option<(Vec3, bool)>,
 }
 
 impl Path<'_> {
@@ -29,7 +33,7 @@ impl Path<'_> {
     #[inline(always)]
     pub(super) fn add<T: TraceListener>(
         &self,
-        Contribution { factor, light, scatterings }: Contribution,
+        Contribution { factor, light, scatterings, sky }: Contribution,
         what: impl FnOnce() -> TermKind,
         state: &PathState,
         context: &SampleContext,
@@ -50,5 +54,9 @@ impl Path<'_> {
         let node = output.listener.begin(state.node, what);
         output.listener.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(light));
         output.listener.weigh(node, context.term(Spectrum::ONE), context.term(throughput));
+        if let Some((dir, is_direct)) = sky {
+            let throughput = || context.lanes.color(throughput * context.lanes.light(Color::ONE));
+            output.listener.sky(|| SkyLight { dir, is_direct, throughput: throughput() });
+        }
     }
 }

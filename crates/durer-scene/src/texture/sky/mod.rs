@@ -1,12 +1,16 @@
-//! Daylight models of a clear sky and the sun, based on the position of the sun and the turbidity
-//! of the air. Luminances are in cd/m^2.
+//! Daylight models of the sky and the sun, based on the position of the sun and either the
+//! turbidity of the air or measured irradiance. Luminances are in cd/m^2.
 
 pub mod hosek;
+pub mod patches;
+pub mod perez;
 pub mod preetham;
 
 use crate::described_words;
 use crate::math::{Color, Vec2, Vec3, fp};
 pub use hosek::Hosek;
+pub use patches::SkyPatches;
+pub use perez::{Irradiance, Perez};
 pub use preetham::Preetham;
 use std::f32::consts::PI;
 
@@ -16,15 +20,16 @@ pub const SUN_RADIUS: f32 = 0.2665;
 /// Width of an environment map of a sky, in texels.
 pub const SKY_WIDTH: u32 = 512;
 
-/// Fraction of its light that the ground below a sky of Hosek and Wilkie reflects by default.
-const REFLECTANCE: f32 = 0.2;
+/// Fraction of its light that the ground reflects by default.
+pub const REFLECTANCE: f32 = 0.2;
 
 described_words! {
-    /// Model of a clear sky: Preetham's of 1999, or that of Hosek and Wilkie of 2012.
-    SkyModel { Preetham = "preetham", Hosek = "hosek" }
+    /// Model of the sky: Preetham's clear sky of 1999, the clear sky of Hosek and Wilkie of 2012,
+    /// or the all-weather sky of Perez of 1993 for measured irradiance.
+    SkyModel { Preetham = "preetham", Hosek = "hosek", Perez = "perez" }
 }
 
-/// Clear sky above a diffuse ground, with the sun.
+/// Sky above a diffuse ground, with the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
     dome: Dome,
@@ -37,6 +42,8 @@ pub struct Sky {
 enum Dome {
     Preetham(Preetham),
     Hosek(Hosek),
+    /// All-weather sky, and the factor from its relative luminance to cd/m^2.
+    Perez(Perez, f32),
 }
 
 impl Dome {
@@ -44,6 +51,7 @@ impl Dome {
         match self {
             Dome::Preetham(sky) => sky.at(dir),
             Dome::Hosek(sky) => sky.at(dir),
+            Dome::Perez(sky, scale) => Color::splat(scale * sky.relative_luminance(dir)),
         }
     }
 
@@ -51,6 +59,7 @@ impl Dome {
         match self {
             Dome::Preetham(sky) => sky.sun(),
             Dome::Hosek(sky) => sky.sun(),
+            Dome::Perez(sky, _) => Color::splat(sky.sun_illuminance()),
         }
     }
 
@@ -73,26 +82,39 @@ impl Dome {
 }
 
 impl Sky {
-    /// Creates a sky. `sun` points to the sun, where y is up. A sun below the horizon is moved to
-    /// the horizon. `reflectance` is the fraction of the light from the sky and the sun that the
-    /// ground reflects. The default is 0.2, or with Preetham's model, a ground with a fifth of the
-    /// luminance of the zenith.
-    pub fn new(model: SkyModel, sun: Vec3, turbidity: f32, reflectance: Option<f32>) -> Self {
-        let up = raised(sun).y;
-        let reflected = |dome: &Dome, share: f32| share * (dome.mean_on_horizontal() + dome.sun() * up / PI);
-        match model {
-            SkyModel::Preetham => {
-                let sky = Preetham::new(sun, turbidity);
-                let dome = Dome::Preetham(sky);
-                let plain = || Vec3::splat(0.2 * sky.zenith_luminance());
-                Sky { dome, ground: reflectance.map_or_else(plain, |share| reflected(&dome, share)) }
-            }
-            SkyModel::Hosek => {
-                let share = reflectance.unwrap_or(REFLECTANCE);
-                let dome = Dome::Hosek(Hosek::new(sun, turbidity, Vec3::splat(share)));
-                Sky { dome, ground: reflected(&dome, share) }
-            }
+    /// Creates a clear sky. `sun` points to the sun, where y is up. A sun below the horizon is
+    /// moved to the horizon. `reflectance` is the fraction of the light from the sky and the sun
+    /// that the ground reflects. The default is a ground with a fifth of the luminance of the
+    /// zenith.
+    pub fn preetham(sun: Vec3, turbidity: f32, reflectance: Option<f32>) -> Self {
+        let sky = Preetham::new(sun, turbidity);
+        let above = Sky::above(Dome::Preetham(sky), sun, reflectance.unwrap_or_default());
+        match reflectance {
+            Some(_) => above,
+            None => Sky { ground: Vec3::splat(0.2 * sky.zenith_luminance()), ..above },
         }
+    }
+
+    /// Creates a clear sky of Hosek and Wilkie; see [`Sky::preetham`]. The ground also brightens
+    /// the sky.
+    pub fn hosek(sun: Vec3, turbidity: f32, reflectance: Option<f32>) -> Self {
+        let share = reflectance.unwrap_or(REFLECTANCE);
+        Sky::above(Dome::Hosek(Hosek::new(sun, turbidity, Vec3::splat(share))), sun, share)
+    }
+
+    /// Creates an all-weather sky above a ground that reflects the fraction `reflectance` of its
+    /// light, by default 0.2.
+    pub fn perez(sky: Perez, reflectance: Option<f32>) -> Self {
+        let mean = Dome::Perez(sky, 1.0).mean_on_horizontal().x;
+        let scale = if mean > 0.0 { sky.sky_illuminance() / (PI * mean) } else { 0.0 };
+        Sky::above(Dome::Perez(sky, scale), sky.sun(), reflectance.unwrap_or(REFLECTANCE))
+    }
+
+    /// Creates a sky above a ground that reflects the fraction `reflectance` of the light from the
+    /// sky and the sun.
+    fn above(dome: Dome, sun: Vec3, reflectance: f32) -> Self {
+        let ground = reflectance * (dome.mean_on_horizontal() + dome.sun() * raised(sun).y / PI);
+        Sky { dome, ground }
     }
 
     /// Radiance that arrives from a unit direction. Below the horizon, it is the radiance of the

@@ -3,6 +3,7 @@
 //! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999.
 //! Luminances are in cd/m^2.
 
+use super::perez::shape;
 use super::{angle, raised};
 use crate::math::{Color, Vec3, fp};
 use crate::spectrum::space::SRGB_FROM_XYZ;
@@ -93,11 +94,6 @@ impl Preetham {
         };
         SUN_OUTSIDE * Vec3::new(through(0.61), through(0.55), through(0.465))
     }
-}
-
-/// Perez's function of the cosine of the zenith angle and the angle to the sun.
-fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32) -> f32 {
-    (1.0 + a * fp::exp(b / cos_zenith)) * (1.0 + c * fp::exp(d * to_sun) + e * cos_sun * cos_sun)
 }
 
 /// Converts CIE Yxy to linear Rec.709.

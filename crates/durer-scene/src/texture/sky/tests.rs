@@ -34,8 +34,9 @@ fn close(found: Color, expected: Color, tolerance: f32) -> bool {
 #[test]
 fn ground_reflects_its_share_of_sun_and_sky() {
     let to_sun = Vec3::new(0.3, 0.6, -0.5);
-    for model in [SkyModel::Preetham, SkyModel::Hosek] {
-        let sky = Sky::new(model, to_sun, 3.0, Some(0.5));
+    let perez = Perez::new(to_sun, &Irradiance::new(600.0, 150.0));
+    let skies = [Sky::preetham(to_sun, 3.0, Some(0.5)), Sky::hosek(to_sun, 3.0, Some(0.5))];
+    for sky in skies.into_iter().chain([Sky::perez(perez, Some(0.5))]) {
         let expected = 0.5 / PI * (level(|dir| sky.at(dir)) + sky.sun() * to_sun.normalize().y);
         let found = sky.at(Vec3::NEG_Y);
         assert!(close(found, expected, 0.01), "{found}, not {expected}");
@@ -44,11 +45,11 @@ fn ground_reflects_its_share_of_sun_and_sky() {
 
 #[test]
 fn sky_is_brightest_around_the_sun_and_finite_everywhere() {
-    for model in [SkyModel::Preetham, SkyModel::Hosek] {
+    for model in [Sky::preetham, Sky::hosek] {
         for height in [0.0, 1.0, 10.0, 45.0, 90.0] {
             for turbidity in [2.0, 4.0, 9.0] {
                 let to_sun = direction(height, 0.0);
-                let sky = Sky::new(model, to_sun, turbidity, None);
+                let sky = model(to_sun, turbidity, None);
                 let picture = environment_map(64, 32, |dir| sky.at(dir));
                 assert!(picture.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
                 let away = sky.at(Vec3::new(-0.8, 0.6, 0.0));
