@@ -201,6 +201,18 @@ impl World {
         }
     }
 
+    /// Returns the colours of a part so far, denoised by Dürer's own denoiser.
+    fn denoised<'py>(
+        &self,
+        py: Python<'py>,
+        part: &Part,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let clean = install(py, threads, || part.0.noisy(&self.world, None).map(render::NoisyPicture::denoised));
+        let image = clean.map_err(failed)?.image;
+        Ok(image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect::<Vec<f32>>().into_pyarray(py))
+    }
+
     /// Returns the first hit of each ray. The arrays contain object, triangle and material, and t,
     /// point, geometric normal and shading normal.
     fn closest<'py>(

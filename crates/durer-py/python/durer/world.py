@@ -267,10 +267,14 @@ class World:
         return world
 
     @classmethod
-    def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
-        """Reads a scene from text in the scene language, as if it were a file in `folder`."""
+    def from_text(
+        cls, text: str, folder: PathLike = ".", *, files: Optional[Mapping[str, bytes]] = None, **reading: Any
+    ) -> World:
+        """Reads a scene from text in the scene language, as if it were a file in `folder`. `files`
+        are the contents of meshes and images by the names with which the text refers to them; other
+        files are read from the folder."""
         world = cls.__new__(cls)
-        world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
+        world._load(Path(folder) / "scene.txt", text.encode(), list((files or {}).items()), reading)
         return world
 
     def __reduce__(self) -> Any:
@@ -390,6 +394,15 @@ class World:
             alone = [name for name in options if part._options is not None and differs({name: options[name]})]
             given = ", ".join(alone or options)
             raise ValueError(f"the part belongs to a different image than the options {given} would give: omit options that determine the image")
+
+    def denoised(self, pictures: Union[Part, Pictures], *, threads: Optional[int] = None) -> Floats:
+        """Returns the colours of a part or of its pictures without their noise, as linear light of
+        shape (height, width, 3). The denoiser is `--denoise=own` of the command: it is guided by the
+        surface in each pixel, and blurs what mirrors and glass show."""
+        part = pictures.part if isinstance(pictures, Pictures) else pictures
+        _, width, height, _, _ = part._part.pictures(False)[0]
+        values = self._world.denoised(part._part, check_threads(threads))
+        return values.reshape(height, width, 3)
 
     async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
         """Renders in a thread. Yields the images so far every `every` seconds, and finally the
