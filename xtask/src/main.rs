@@ -6,6 +6,7 @@ mod bench_files;
 mod bench_pictures;
 mod bench_rays;
 mod bitterli;
+mod blender;
 mod build;
 mod cost;
 mod course;
@@ -92,6 +93,12 @@ const USAGE: &str = "Commands:
       CPU time to equal noise, Dürer and Mitsuba (llvm_ad_rgb), in turns.
   cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
       Cost of direct light from point lights: Dürer, Mitsuba 3's `direct`, and Blender's Cycles if the package index has it.
+  cargo xtask blender [--wheel FILE ...]
+      Pack the add-on for Blender as target/durer_blender-VERSION.zip. --wheel: a wheel of the package `durer` to include,
+      one for each platform.
+  cargo xtask blender --test [--python PROGRAM] [--only TEXT] [--samples 256] [--keep FOLDER]
+      Install the packed add-on in Blender (`bpy` from the package index), render ten scenes beside Cycles, and write the
+      table in docs/blender.md. --python: an interpreter that has bpy and durer. --keep: save the pictures in FOLDER.
   cargo xtask validate [--samples N]
       Compare light with known answers, test white furnaces, and test sampled directions against their pdf. Writes
       docs/validation.md.
@@ -138,6 +145,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("explain") => explain::run(&arguments[1..]),
         Some("hashes") => hashes::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
+        Some("blender") => blender::run(&arguments[1..]),
         Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("sheet") => sheet::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
