@@ -18,6 +18,11 @@ TEXTURED_NUMBERS = {
 TEXTURED_COLORS = {"baseColor", "specularColor", "transmissionColor", "subsurfaceColor", "coatColor", "fuzzColor"}
 
 
+#: Opacity of lights with an extent. In Blender, they hide nothing and cast no shadows. Their radiance
+#: is divided by the opacity, so that they give the same light. A lower value would be noisier.
+LIGHT_OPACITY = 0.1
+
+
 @dataclass
 class Layered:
     """A principled material."""
@@ -536,7 +541,7 @@ class Materials:
         see."""
         most = max(radiance)
         color = tuple(value / most for value in radiance) if most > 0 else (0.0, 0.0, 0.0)
-        fields = {**black().fields, "emissionLuminance": most, "emissionColor": color}
+        fields = {**black().fields, "emissionLuminance": most / LIGHT_OPACITY, "emissionColor": color, "opacity": LIGHT_OPACITY}
         return self._add(block("PrincipledMaterial", [*fields.items(), ("seenByCamera", "off")]))
 
     def _add(self, text):
