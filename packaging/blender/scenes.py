@@ -394,9 +394,9 @@ def alpha():
 SCENES = {
     "modifiers": (modifiers, 0.01, 0.03),
     "spot and sun": (spot_and_sun, 0.01, 0.03),
-    "room": (room, 0.01, 0.03),
+    "room": (room, 0.01, 0.04),
     "textures": (textures, 0.01, 0.03),
-    "glass": (glass, 0.01, 0.03),
+    "glass": (glass, 0.01, 0.04),
     "metals": (metals, 0.01, 0.03),
     "instances": (instances, 0.01, 0.03),
     "lens": (lens, 0.01, 0.03),
