@@ -6,6 +6,7 @@ mod bench_files;
 mod bench_pictures;
 mod bench_rays;
 mod bitterli;
+mod blender;
 mod build;
 mod cost;
 mod course;
@@ -95,6 +96,12 @@ const USAGE: &str = "Commands:
   cargo xtask peers --daylight [--python PROGRAM] [--fast]
       Compare the daylight of a year in a room with Radiance's tools, and write the table in docs/daylight.md. Without
       --python, installs pyradiance from the package index into target/peers. --fast: fewer samples, and no table.
+  cargo xtask blender [--wheel FILE ...]
+      Pack the add-on for Blender as target/durer_blender-VERSION.zip. --wheel: a wheel of the package `durer` to include,
+      one for each platform.
+  cargo xtask blender --test [--python PROGRAM] [--only TEXT] [--samples 256] [--keep FOLDER]
+      Install the packed add-on in Blender (`bpy` from the package index), render ten scenes beside Cycles, and write the
+      table in docs/blender.md. --python: an interpreter that has bpy and durer. --keep: save the pictures in FOLDER.
   cargo xtask validate [--samples N]
       Compare light with known answers, test white furnaces, and test sampled directions against their pdf. Writes
       docs/validation.md.
@@ -141,6 +148,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("explain") => explain::run(&arguments[1..]),
         Some("hashes") => hashes::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
+        Some("blender") => blender::run(&arguments[1..]),
         Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("sheet") => sheet::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),

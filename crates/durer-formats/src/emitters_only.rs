@@ -25,6 +25,7 @@ pub(super) fn blacken(scene: &mut Scene) {
             opacity_texture: own.opacity_texture,
             walls: own.walls,
             backs: own.backs,
+            seen_by_camera: own.seen_by_camera,
             ..PrincipledMaterial::default()
         }));
     }

@@ -77,8 +77,8 @@ features! {
     PrincipledMaterials: "principled materials: diffuse, plastic, metal and smooth glass", true, true;
     /// Other layers of principled materials. The Whitted integrator approximates them.
     Layers: "coats, fuzz, films, thin walls, subsurface scattering, rough glass, anisotropy", true, false;
-    /// Opacity below 1, hidden or black backs.
-    Cutouts: "opacity below 1, and hidden or black backs", true, false;
+    /// Opacity below 1, hidden or black backs, surfaces that the camera does not see.
+    Cutouts: "opacity below 1, hidden or black backs, surfaces that the camera does not see", true, false;
     /// Hair.
     Hair: "hair", true, false;
     /// Emissive surfaces.

@@ -359,8 +359,8 @@ impl Part {
     }
 
     /// Denoises the colour image with the built-in denoiser. Returns it like [`Part::pictures`].
-    fn denoised<'py>(&self, py: Python<'py>, world: &World) -> PyResult<Picture<'py>> {
-        let denoised = install(py, None, || self.0.noisy(&world.world, None).map(|noisy| noisy.denoised()));
+    fn denoised<'py>(&self, py: Python<'py>, world: &World, threads: Option<usize>) -> PyResult<Picture<'py>> {
+        let denoised = install(py, threads, || self.0.noisy(&world.world, None).map(|noisy| noisy.denoised()));
         Ok(picture(py, denoised.map_err(failed)?))
     }
 

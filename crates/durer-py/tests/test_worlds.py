@@ -318,3 +318,19 @@ def test_depth_of_background(whitted):
     pictures = durer.World(camera, [durer.Sphere(center=(0, 0, 0), radius=1)], []).render(size=(16, 16), samples=1, show="depth,normals")
     assert pictures["depth"][0, 0] == 0 and pictures["depth"][8, 8] == pytest.approx(4, abs=0.1)
     assert (pictures["normals"][0, 0] == 0).all() and "0 for a miss" in durer.kinds()["depth"]
+
+
+def test_denoised_pictures_are_closer_to_the_noiseless_one():
+    world = durer.World.from_text(
+        """PerspectiveCamera { center 0 1 5 direction 0 -0.2 -1 up 0 1 0 angle 40 }
+        Background { color 0.6 0.7 0.9 }
+        Materials { PrincipledMaterial { baseColor 0.7 0.4 0.3 specularWeight 0 } }
+        Group { MaterialIndex 0 Sphere { center 0 0.5 0 radius 1 } Plane { normal 0 1 0 offset -0.5 } }""",
+        dialect="durer",
+    )
+    truth = world.render(size=(48, 48), samples=512, seed=1)["color"]
+    noisy = world.render(size=(48, 48), samples=4)
+    clean = world.denoise(noisy, threads=1)["denoised"]
+    assert clean.shape == (48, 48, 3)
+    assert np.abs(clean - truth).mean() < 0.7 * np.abs(noisy["color"] - truth).mean()
+    assert (clean == world.denoise(noisy.part)["denoised"]).all()

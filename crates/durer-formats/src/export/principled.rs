@@ -224,6 +224,7 @@ impl Export<'_> {
             (m.thin_film_weight > 0.0, "thin films", "they are left out"),
             (m.disperses(), "dispersion", "one index of refraction is written"),
             (m.backs == Backs::Hidden, "hidden back sides", "they are visible"),
+            (m.seen_by_camera == Switch::Off, "surfaces that the camera does not see", "they are visible"),
             (
                 m.coat_weight > 0.0 && (m.base_metalness > 0.0 || m.transmission_weight > 0.0),
                 "coats over metal or glass",

@@ -61,7 +61,7 @@ pub fn needs(world: &World, job: &Job) -> Vec<Feature> {
     if world.fog().is_some() && traces_paths {
         found.push(Feature::Media);
     }
-    if traces_paths && (world.has_cutouts() || world.hides_emitters()) {
+    if traces_paths && (world.has_cutouts() || world.hides_emitters() || world.has_unseen()) {
         found.push(Feature::Cutouts);
     }
     if world.glass_around(world.camera_frame().eye).next().is_some() {

@@ -1168,6 +1168,8 @@ class PrincipledMaterial(Material):
     walls: `solid`, `thin`; default solid. `thin`: a sheet without an inside, which light crosses in a straight line. `solid`: the surface of a solid object.
 
     backs: `shown`, `hidden`, `black`; default shown. `shown`: both sides are visible. `hidden`: faces that are turned away from the camera, or from a light without extent, are transparent to it. `black`: faces turned away scatter no light.
+
+    seen_by_camera: `on`, `off`; default on. `off`: the camera looks through the surface, which still lights the scene, casts shadows and is seen in mirrors, like the lights of Blender; `path` only.
     """
 
     def __init__(
@@ -1260,6 +1262,7 @@ class PrincipledMaterial(Material):
         opacity_cutoff: Optional[float] = None,
         walls: Optional[Literal["solid", "thin"]] = None,
         backs: Optional[Literal["shown", "hidden", "black"]] = None,
+        seen_by_camera: Optional[Literal["on", "off"]] = None,
     ) -> None:
         super().__init__("PrincipledMaterial", [
             ("layering", layering),
@@ -1349,6 +1352,7 @@ class PrincipledMaterial(Material):
             ("opacityCutoff", opacity_cutoff),
             ("walls", walls),
             ("backs", backs),
+            ("seenByCamera", seen_by_camera),
         ])
 
 

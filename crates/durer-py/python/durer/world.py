@@ -304,15 +304,19 @@ class World:
         return world
 
     @classmethod
-    def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
-        """Reads a scene from text in the scene language, as if it were a file in `folder`.
+    def from_text(
+        cls, text: str, folder: PathLike = ".", *, files: Optional[Mapping[str, bytes]] = None, **reading: Any
+    ) -> World:
+        """Reads a scene from text in the scene language, as if it were a file in `folder`. `files`
+        are the contents of meshes and images by the names with which the text refers to them; other
+        files are read from the folder.
 
         >>> text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Group { Sphere { center 0 0 0 radius 1 } }"
         >>> durer.World.from_text(text).closest((0, 0, 5), (0, 0, -1)).t
         array(4., dtype=float32)
         """
         world = cls.__new__(cls)
-        world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
+        world._load(Path(folder) / "scene.txt", text.encode(), list((files or {}).items()), reading)
         return world
 
     def __reduce__(self) -> Any:
@@ -507,8 +511,8 @@ class World:
         shape, rays = check_rays(origins, directions, t_min, t_max)
         return self._world.occluded(rays, check_threads(threads), watch(progress)).reshape(shape)
 
-    def denoise(self, pictures: Pictures) -> Pictures:
-        """Returns the images of a render of this world with the denoised colour first, as
+    def denoise(self, pictures: Union[Part, Pictures], *, threads: Optional[int] = None) -> Pictures:
+        """Returns the images of a part or of its pictures with the denoised colour first, as
         `denoised`, of shape (height, width, 3). The denoiser is the built-in one of `durer render
         --denoise=own`: a non-local-means filter guided by albedo, normals and positions.
 
@@ -516,8 +520,9 @@ class World:
         >>> world.denoise(noisy)["denoised"].shape
         (30, 40, 3)
         """
-        result = Pictures(pictures.part)
-        name, width, height, values, alpha = pictures.part._part.denoised(self._world)
+        part = pictures.part if isinstance(pictures, Pictures) else pictures
+        result = Pictures(part)
+        name, width, height, values, alpha = part._part.denoised(self._world, check_threads(threads))
         result._denoised = (name, width, height, values, alpha)
         result[name] = values.reshape(height, width, 3)
         return result

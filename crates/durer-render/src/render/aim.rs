@@ -166,12 +166,20 @@ impl<'a> CameraRays<'a> {
         };
         let at = CameraSample { point: self.raster.point(film_position), pixel: pixel.point, lens };
         let ray = self.world.camera().ray(self.world.camera_frame(), &at);
-        PixelSample { film_position, lens, weight, ray: self.without_misses(ray) }
+        PixelSample { film_position, lens, weight, ray: self.without_misses(ray, pixel.id, sample) }
     }
 
-    /// Removes a ray that hits nothing if the job replaces the background.
-    fn without_misses(&self, ray: Option<Ray>) -> Option<Ray> {
-        ray.filter(|ray| self.job.backdrop.is_none() || self.world.occluded(ray, &mut ()))
+    /// Removes the ray of a sample that hits nothing if the job replaces the background.
+    fn without_misses(&self, ray: Option<Ray>, id: SampleId, sample: u32) -> Option<Ray> {
+        ray.filter(|ray| self.job.backdrop.is_none() || self.sees_surface(ray, id, sample))
+    }
+
+    /// Returns true if the camera sees a surface on the ray of a sample.
+    fn sees_surface(&self, ray: &Ray, id: SampleId, sample: u32) -> bool {
+        match self.world.is_seen_through() && self.job.method.path_options().is_some() {
+            true => self.world.first_seen(ray, Some(&id.with_sample(sample)), &mut ()).is_some(),
+            false => self.world.occluded(ray, &mut ()),
+        }
     }
 
     /// Generates the rays and weights of a group of samples. The results are the same as those of
@@ -179,7 +187,7 @@ impl<'a> CameraRays<'a> {
     pub(super) fn sample_group(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
-                take(i, self.without_misses(ray), weight);
+                take(i, self.without_misses(ray, of.pixel(i).id, of.number(i)), weight);
             }
         };
         match (&self.filter_sampler, self.job.sampling) {
@@ -221,14 +229,16 @@ impl<'a> CameraRays<'a> {
     ) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (film_position, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
-        let ray = self.without_misses(camera_ray(self.world, &self.raster, (x, y), film_position, lens));
+        let ray = camera_ray(self.world, &self.raster, (x, y), film_position, lens);
+        let ray = self.without_misses(ray, SampleId::new(self.job.seed, (x, y), 0), sample);
         (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
     /// Generates the sample of a sub-pixel for the 2012 course.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
-        let ray = self.without_misses(camera_ray(self.world, raster, (x, y), place, lens));
+        let ray = camera_ray(self.world, raster, (x, y), place, lens);
+        let ray = self.without_misses(ray, SampleId::new(self.job.seed, (x, y), 0), 0);
         PixelSample { film_position: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 

@@ -96,6 +96,32 @@ fn explanations_sum_to_the_pixel() {
 }
 
 #[test]
+fn camera_sees_the_background_through_cutouts_and_unseen_surfaces() {
+    let world = testing::read(
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }
+         Background { color 0.2 0.3 0.4 }
+         Materials {
+             PrincipledMaterial { opacity 0.25 }
+             PrincipledMaterial { emissionLuminance 1 seenByCamera off }
+         }
+         Group {
+             MaterialIndex 0 Rectangle { corner -9 -9 0 edge0 18 0 0 edge1 0 18 0 }
+             MaterialIndex 1 Sphere { center 0 0 2 radius 0.5 }
+         }",
+    );
+    let background = Color::new(0.2, 0.3, 0.4);
+    let sampling = Sampling::Filtered { samples: 256, filter: Filter::default() };
+    let job = Job { width: 8, height: 8, sampling, method: IntegratorKind::PATH, ..Job::default() };
+    let whole = layer(&world, &job);
+    let open = layer(&world, &Job { backdrop: Some(Backdrop::Transparent), ..job.clone() });
+    assert_near(&over(&open, background), &whole.image.pixels);
+    let coverage = open.coverage.as_ref().unwrap();
+    assert!(coverage.iter().all(|share| (share - 0.25).abs() < 0.1), "{coverage:?}");
+    let mean = coverage.iter().sum::<f32>() / coverage.len() as f32;
+    assert!((mean - 0.25).abs() < 0.01, "{mean}");
+}
+
+#[test]
 fn fog_has_no_background() {
     let world = testing::read(&format!("{TEXT}\nFog {{ extinction 0.1 }}"));
     let job = Job { backdrop: Some(Backdrop::Transparent), ..Job::default() };

@@ -22,6 +22,7 @@ pub(super) fn trace(
     let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
     let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
     let path = Path::new(world, job.settings, job.method.path_options().unwrap_or_default());
+    let sees_through = world.has_unseen() && job.method.path_options().is_some();
     let mut rays = RayCount::default();
     let mut inputs = Vec::with_capacity(rect.pixels() as usize);
     for (x, y) in rect.pixel_positions() {
@@ -31,7 +32,10 @@ pub(super) fn trace(
             inputs.push(AovInput::NOTHING);
             continue;
         };
-        let hit = world.intersect(&ray, &mut rays);
+        let hit = match sees_through {
+            true => world.first_seen(&ray, None, &mut rays),
+            false => world.intersect(&ray, &mut rays),
+        };
         let mut counts = TraversalStats::default();
         if cost_wanted {
             samples.whitted.radiance(&ray, &mut counts);

@@ -13,6 +13,7 @@ mod material;
 mod merged;
 mod object;
 mod rules;
+mod seen;
 pub mod shading;
 pub mod solid;
 
@@ -52,6 +53,7 @@ pub struct World {
     emitters: LightSampler,
     has_cutouts: bool,
     hides_backs: bool,
+    has_unseen: bool,
     has_interfaces: bool,
     /// True if some thin sheet lets light pass straight through.
     has_sheets: bool,
@@ -128,6 +130,7 @@ impl World {
             emitters: LightSampler::default(),
             has_cutouts: false,
             hides_backs: false,
+            has_unseen: false,
             has_interfaces: false,
             has_sheets: false,
             bodies: Vec::new(),
@@ -140,6 +143,7 @@ impl World {
         };
         world.has_cutouts = world.finds_cutouts();
         world.hides_backs = world.finds_hidden_backs();
+        world.has_unseen = world.finds_unseen();
         world.has_interfaces = world.finds_interfaces();
         world.has_sheets = world.finds_sheets();
         world.bodies = world.finds_bodies();
@@ -166,6 +170,11 @@ impl World {
     /// Returns true if the backs of some surfaces are invisible to the camera.
     pub fn hides_backs(&self) -> bool {
         self.hides_backs
+    }
+
+    /// Returns true if the camera looks through some surfaces.
+    pub fn has_unseen(&self) -> bool {
+        self.has_unseen
     }
 
     /// Returns true if some surface is only the boundary of a medium, so that light passes through

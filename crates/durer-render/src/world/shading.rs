@@ -345,6 +345,17 @@ impl World {
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
 
+    /// Returns true if the camera looks through the surface of a hit, as all its materials are
+    /// `seenByCamera off`.
+    pub fn is_unseen(&self, at: &SurfaceInteraction) -> bool {
+        self.has_unseen() && self.materials_at(at).iter().all(|part| is_unseen(part.phong))
+    }
+
+    /// Returns true if some material is not seen by the camera.
+    pub(crate) fn finds_unseen(&self) -> bool {
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if is_unseen(phong)))
+    }
+
     /// Returns true if some material or mesh has an opacity below 1.
     pub(crate) fn finds_cutouts(&self) -> bool {
         let of_phong = |phong: &Phong| {
@@ -467,6 +478,11 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
 /// Returns true if the backs of a material's surfaces are invisible to the camera.
 fn hides_backs(phong: &Phong) -> bool {
     phong.principled.as_ref().is_some_and(|principled| principled.definition.backs == Backs::Hidden)
+}
+
+/// Returns true if the camera looks through the surfaces of a material.
+fn is_unseen(phong: &Phong) -> bool {
+    phong.principled.as_ref().is_some_and(|principled| principled.definition.seen_by_camera == Switch::Off)
 }
 
 #[cfg(test)]

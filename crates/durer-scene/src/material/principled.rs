@@ -311,6 +311,9 @@ described! {
         /// or from a light without extent, are transparent to it. `black`: faces turned away
         /// scatter no light.
         backs: Backs = Backs::Shown, optional, Constraint::Any, ["backs" in set::DURER];
+        /// `off`: the camera looks through the surface, which still lights the scene, casts shadows
+        /// and is seen in mirrors, like the lights of Blender; `path` only.
+        seen_by_camera: Switch = Switch::On, optional, Constraint::Any, ["seenByCamera" in set::DURER];
     }
 }
 

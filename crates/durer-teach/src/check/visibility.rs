@@ -68,31 +68,33 @@ const BEHIND: f32 = 1e-3;
 
 /// Returns true if a ray hits an object first, on its visible or on its hidden side.
 fn is_first(input: &CheckInput, ray: &Ray, number: u32) -> bool {
-    hides_backs(input) && input.world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
+    looks_through(input) && input.world.closest(ray, &mut ()).is_some_and(|hit| hit.object == number)
 }
 
-/// Returns true if the render ignores the backs of some surfaces. Only path tracing does.
-fn hides_backs(input: &CheckInput) -> bool {
-    input.world.hides_backs() && input.job.method.path_options().is_some()
+/// Returns true if the camera looks through some surfaces or their backs. Only path tracing does.
+fn looks_through(input: &CheckInput) -> bool {
+    (input.world.hides_backs() || input.world.has_unseen()) && input.job.method.path_options().is_some()
 }
 
 /// Returns true if the material of an object hides its backs.
 pub(super) fn hides_backs_of(grid: &ProbeGrid, object: u32) -> bool {
     let material = grid.world().objects()[object as usize].material as usize;
     let written = grid.input.scene.materials.get(material).map(|material| &material.value);
-    hides_backs(&grid.input) && matches!(written, Some(Material::Principled(layers)) if layers.backs == Backs::Hidden)
+    looks_through(&grid.input) && matches!(written, Some(Material::Principled(layers)) if layers.backs == Backs::Hidden)
 }
 
-/// Returns a camera ray that starts behind the hidden backs of surfaces in front of it.
+/// Returns a camera ray that starts behind the hidden backs, and surfaces with `seenByCamera off`,
+/// in front of it.
 pub(super) fn past_hidden_backs(input: &CheckInput, mut ray: Ray) -> Ray {
-    if !hides_backs(input) {
+    if !looks_through(input) {
         return ray;
     }
     let world = input.world;
     // The loop limits the number of layers.
     for _ in 0..64 {
         let Some(hit) = world.closest(&ray, &mut ()) else { break };
-        if !world.is_hidden(ray.dir, &world.interaction(ray, hit)) {
+        let at = world.interaction(ray, hit);
+        if !world.is_hidden(ray.dir, &at) && !world.is_unseen(&at) {
             break;
         }
         ray.t_min = hit.t;

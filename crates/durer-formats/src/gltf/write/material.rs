@@ -7,7 +7,7 @@ use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::parameters::TEXTURE_FIELDS;
-use durer_scene::material::principled::{Backs, Layering, Walls};
+use durer_scene::material::principled::{Backs, Layering, Switch, Walls};
 use durer_scene::material::{Pattern, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::{Material, TextureImage};
@@ -181,6 +181,9 @@ impl Writer<'_> {
         }
         if is_metal && m.specular_color != Vec3::ONE {
             self.warn_lost("glTF metals have no tint at grazing angles: it is left out");
+        }
+        if m.seen_by_camera == Switch::Off {
+            self.warn_lost("glTF has no surfaces that the camera does not see: they are visible");
         }
         if m.bump_texture.is_some() || m.opacity_texture.is_some() {
             self.warn_lost("glTF has no bump or opacity textures: they are left out");

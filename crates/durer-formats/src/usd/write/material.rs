@@ -290,6 +290,7 @@ impl Writer<'_> {
             (is_clear && m.opacity < 1.0, "glass with an opacity", "the opacity is written"),
             (m.backs == Backs::Black, "black back sides", "they are like the front sides"),
             (m.backs == Backs::Hidden, "hidden back sides", "they are visible"),
+            (m.seen_by_camera == Switch::Off, "surfaces that the camera does not see", "they are visible"),
             (is_metal && m.metal_ior.is_some(), "the index of refraction of metals", "their colour is written"),
             (is_metal && m.specular_color != Vec3::ONE, "the tint of metals at grazing angles", "it is left out"),
             (is_metal && m.base_metalness < 1.0 && m.specular_weight != 1.0, "weights of mixed metals", "they are 1"),

@@ -117,6 +117,10 @@ impl Path<'_> {
                     passed.pass(&hit);
                     break 'passed;
                 }
+                if state.depth == 0 && state.camera_distance.is_some() && self.world.is_unseen(at) {
+                    passed.pass(&hit);
+                    break 'passed;
+                }
                 if self.hides_emitters(state) && self.world.emits(at.material) {
                     passed.pass(&hit);
                     break 'passed;

@@ -449,3 +449,17 @@ fn cameras_and_delta_lights_see_through_hidden_backs() {
         assert_light(&format!("{corner} {sides}"), &world, to_origin(), 0, expected);
     }
 }
+
+#[test]
+fn camera_looks_through_an_unseen_emitter_that_lights_the_floor() {
+    let world = scene(
+        &format!(
+            "{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 1 seenByCamera off }}"
+        ),
+        "",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Disc { center 0 0.5 0 normal 0 -1 0 radius 2 }",
+    );
+    // The disc is seen at an angle whose squared sine is the view factor.
+    assert_light("disc", &world, to_origin(), 0, 0.5 * 4.0 / (4.0 + 0.25));
+    assert!(world.first_seen(&to_origin(), None, &mut ()).is_some_and(|at| at.material == 0));
+}
