@@ -396,11 +396,20 @@ impl World {
 
     /// Iterates over all hits in the ray's interval, in order of distance. If several hits have the
     /// same `t`, only the first one is included.
+    ///
+    /// The official programs of some years also return hits at the start of the interval. Such a hit
+    /// is not included twice, since the iteration would never end otherwise.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let mut rest = ray.into();
+        let mut last: Option<f32> = None;
         std::iter::from_fn(move || {
-            let hit = self.closest(&rest, &mut ())?;
+            let mut hit = self.closest(&rest, &mut ())?;
+            if let Some(last) = last.filter(|last| hit.t <= *last) {
+                rest.rounded.t_min = last.next_up();
+                hit = self.closest(&rest, &mut ()).filter(|hit| hit.t > last)?;
+            }
             rest.rounded.t_min = hit.t;
+            last = Some(hit.t);
             Some(hit)
         })
     }

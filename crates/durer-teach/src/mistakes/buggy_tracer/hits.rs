@@ -18,6 +18,12 @@ impl BuggyTracer<'_> {
             let seen = hits.map(|hit| (hit, self.own_t(ray, &hit)));
             return seen.filter(|(_, t)| *t < ray.rounded.t_max).min_by(|a, b| a.1.total_cmp(&b.1));
         }
+        if self.bugs.behind == Some(BehindOrigin::Beyond) {
+            let near = ray.rounded.t_min.max(0.0);
+            let mut whole = *ray;
+            whole.rounded.t_min = f32::NEG_INFINITY;
+            return self.world.all_hits(&whole).find(|hit| hit.t.abs() > near).map(|hit| (hit, hit.t));
+        }
         let hit = match self.bugs.hit_choice {
             HitChoice::Nearest => self.world.closest(ray, &mut ()),
             HitChoice::Last => self.world.all_hits(ray).last(),
@@ -97,6 +103,8 @@ impl BuggyTracer<'_> {
             Roots::FourHalf => (b * b - 4.0 * a * c, 2.0 * a),
             Roots::FourWhole => (b * b - 4.0 * a * c, a),
             Roots::TwiceA => (b * b - a * c, 2.0 * a),
+            Roots::Unit => (b * b - c, 1.0),
+            Roots::UnitDivisor => (b * b - a * c, 1.0),
         };
         let root = radicand.sqrt();
         let both = [(-b - root) / divisor, (-b + root) / divisor];
@@ -110,8 +118,10 @@ impl BuggyTracer<'_> {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {
             let is_mesh = matches!(self.world.objects()[hit.object as usize].geometry, Geometry::Mesh(_));
-            let is_new = !known.contains(&hit.object);
-            known.push(hit.object);
+            let is_new = !is_mesh && !known.contains(&hit.object);
+            if is_new {
+                known.push(hit.object);
+            }
             is_mesh || is_new
         })
     }
@@ -134,7 +144,8 @@ impl BuggyTracer<'_> {
             self.bugs.hit_choice,
             HitChoice::NearRoots | HitChoice::Fronts(_) | HitChoice::Roots(_) | HitChoice::MovedDirection
         );
-        if self.bugs.local_unit || own_hits {
+        let beyond = self.bugs.behind == Some(BehindOrigin::Beyond);
+        if self.bugs.local_unit || own_hits || beyond {
             return self.closest(ray).is_some();
         }
         let mut ray = *ray;
