@@ -155,10 +155,12 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> ComparedPair {
         let comparison = compare(&reference, &picture, options)
             .map_err(|error| format!("`{}` and `{}`: {error}", pair.reference.display(), path.display()))?;
         let pictures = page.then(|| page::pair_pictures(&reference, &picture, &comparison)).transpose()?;
-        Ok((comparison, pictures))
+        Ok((comparison, pictures, reference.shows_color()))
     });
     match compared {
-        Ok((comparison, pictures)) => ComparedPair::new(pair, Outcome::Compared(Box::new(comparison)), pictures),
+        Ok((comparison, pictures, shows_color)) => {
+            ComparedPair { shows_color, ..ComparedPair::new(pair, Outcome::Compared(Box::new(comparison)), pictures) }
+        }
         Err(reason) => ComparedPair::new(pair, Outcome::Failed(reason), None),
     }
 }

@@ -29,12 +29,15 @@ pub struct ComparedPair {
     pub diagnosis: Option<Diagnosis>,
     /// Note about the options of the reference if they were inferred.
     pub note: Option<String>,
+    /// True unless the reference seems to show distances or normals, which `--scene` cannot
+    /// explain.
+    pub shows_color: bool,
 }
 
 impl ComparedPair {
     /// Creates a compared pair without hits or a diagnosis.
     pub fn new(pair: Pair, outcome: Outcome, pictures: Option<PairPictures>) -> Self {
-        ComparedPair { pair, outcome, pictures, hits: Vec::new(), diagnosis: None, note: None }
+        ComparedPair { pair, outcome, pictures, hits: Vec::new(), diagnosis: None, note: None, shows_color: true }
     }
 
     /// Returns lines that explain the difference.
@@ -42,10 +45,10 @@ impl ComparedPair {
         match (&self.outcome, &self.diagnosis) {
             // If the scene explains nothing, report what the pictures alone explain.
             (Outcome::Compared(comparison), Some(diagnosis)) if has_only_findings(comparison, diagnosis) => {
-                explained(comparison).into_iter().chain(mistakes::lines(diagnosis)).collect()
+                explained(comparison, None).into_iter().chain(mistakes::lines(diagnosis)).collect()
             }
             (_, Some(diagnosis)) => mistakes::lines(diagnosis),
-            (Outcome::Compared(comparison), None) => explained(comparison),
+            (Outcome::Compared(comparison), None) => explained(comparison, Some(self.shows_color)),
             _ => Vec::new(),
         }
     }
@@ -93,25 +96,31 @@ fn has_only_findings(comparison: &Comparison, diagnosis: &Diagnosis) -> bool {
     is_unknown && comparison.verdict == Verdict::Different && !comparison.findings.is_empty()
 }
 
-/// Explains a difference from the pictures alone, with one line per cause.
-fn explained(comparison: &Comparison) -> Vec<String> {
+/// Explains a difference from the pictures alone, with one line per cause. `scene` is `None` if the
+/// scene was already given, and otherwise true if it would help.
+fn explained(comparison: &Comparison, scene: Option<bool>) -> Vec<String> {
     if comparison.verdict != Verdict::Different {
         return Vec::new();
     }
     if comparison.findings.is_empty() {
-        return vec![
-            "the pictures alone do not reveal the cause; pass `--scene` and the options that the reference was \
-             rendered with"
-                .into(),
-        ];
+        let advice = match scene {
+            Some(true) => "; pass `--scene` and the options that the reference was rendered with",
+            _ => "",
+        };
+        return vec![format!("the pictures alone do not reveal the cause{advice}")];
     }
     let line = |(i, finding): (usize, &Finding)| {
         let percent = mistakes::percent(finding.explained);
         match i {
             // The location of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
+                let advice = match scene {
+                    Some(true) => ": the pictures alone do not show the cause; pass `--scene` to try common mistakes",
+                    Some(false) => ": the pictures alone do not show the cause",
+                    None => "",
+                };
                 format!(
-                    "{} ({percent} of the squared difference lies in this part of the picture)",
+                    "{}{advice} ({percent} of the squared difference lies in this part of the picture)",
                     finding.description
                 )
             }

@@ -77,6 +77,19 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Returns false if the picture seems to show distances or normals instead of colours: if all
+    /// pixels are grey, or if nearly all of them encode unit vectors or are background.
+    pub fn shows_color(&self) -> bool {
+        let pixels = &self.image.pixels;
+        let Some(background) = pixels.first() else { return true };
+        let objects: Vec<&Vec3> = pixels.iter().filter(|pixel| *pixel != background && **pixel != Vec3::ZERO).collect();
+        let is_unit = |pixel: Vec3| (pixel.length() - 1.0).abs() < 0.02;
+        let share = |is: &dyn Fn(Vec3) -> bool| objects.iter().filter(|pixel| is(***pixel)).count() * 100;
+        let enough = 95 * objects.len();
+        let is_grey = pixels.iter().all(|pixel| pixel.max_element() - pixel.min_element() < 1e-4);
+        !(is_grey || share(&is_unit) >= enough || share(&|pixel| is_unit(2.0 * pixel - 1.0)) >= enough)
+    }
+
     /// Decodes a picture. The format is determined by the content or, if the content does not
     /// identify it, by the extension of `name`. Alpha is discarded.
     ///

@@ -166,6 +166,32 @@ fn shifted_samples() {
     finds("edges", "the picture is antialiased", &middle, &smooth);
 }
 
+/// A few pixels at edges that differ by rounding, and specks of noise, are no antialiasing.
+#[test]
+fn specks_are_not_taken_for_samples() {
+    let stripes = |x: usize, _: usize| Vec3::splat(if x / 7 % 2 == 0 { 0.8 } else { 0.3 });
+    let specks = move |x: usize, y: usize| match (x * 7919 + y * 104_729) % 101 {
+        0 => Vec3::ZERO,
+        1 => Vec3::ONE,
+        _ => stripes(x, y),
+    };
+    let found = findings(&stripes, &specks);
+    assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
+    let rounded = move |x: usize, y: usize| if x % 7 == 0 && y % 40 == 3 { stripes(x + 7, y) } else { stripes(x, y) };
+    let found = findings(&stripes, &rounded);
+    assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
+}
+
+#[test]
+fn other_colors_are_neither_brighter_nor_darker() {
+    let recolored = |x: usize, y: usize| {
+        let [r, g, b] = scene(x, y).to_array();
+        if x < 60 { Vec3::new(g * 0.5, r, 1.0 - b) } else { Vec3::new(r, g, b) }
+    };
+    let found = findings(&scene, &recolored);
+    assert!(found.iter().all(|f| !f.kind.ends_with("-parts")), "{found:?}");
+}
+
 #[test]
 fn two_mistakes_behind_each_other() {
     let found = findings(&scene, &move |x, y| scene(SIDE - 1 - x, y).map(linear_to_srgb));
