@@ -10,6 +10,38 @@ pub enum CosinePower {
     None,
     /// The power is 2.
     Twice,
+    /// The power is 0 for light samples.
+    NoneForLights,
+    /// The power is 2 for light samples.
+    TwiceForLights,
+    /// The power is 0 for point lights and directional lights.
+    NoneForPoints,
+}
+
+/// Use of the factor 1/π of the diffuse lobe in a student's path tracer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DiffusePi {
+    /// The factor is always there, which is correct.
+    #[default]
+    Correct,
+    /// The factor is missing everywhere.
+    Missing,
+    /// Light samples lack the factor.
+    MissingForLights,
+    /// Scattered light lacks the factor.
+    MissingForScattered,
+}
+
+/// Strategies by which a student's path tracer finds lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Strategies {
+    /// Light samples and scattered rays with MIS weights, which is correct.
+    #[default]
+    Weighted,
+    /// Light samples and scattered rays without weights.
+    Unweighted,
+    /// Only light samples, which is correct on its own.
+    LightSamples,
 }
 
 /// Method by which a student's path tracer samples the scattered direction at a surface.
@@ -26,6 +58,14 @@ pub enum DirectionSampling {
     UniformPdf,
     /// BSDF sampling in which the local coordinates are used as world-space coordinates.
     LocalFrame,
+    /// BSDF sampling about the z axis of world space, where directions below the surface end the
+    /// path.
+    LocalFrameAbove,
+    /// BSDF sampling about the y axis of world space.
+    AboutY,
+    /// BSDF sampling about the y axis of world space, where directions below the surface end the
+    /// path.
+    AboutYAbove,
     /// BSDF sampling with the same random number for both dimensions.
     OneNumber,
 }
@@ -38,12 +78,18 @@ pub enum MissingFactor {
     Nothing,
     /// The factor 1 / d² is omitted.
     Distance,
+    /// The factor is 1 / d instead of 1 / d².
+    DistanceOnce,
     /// The cosine at the light is omitted.
     Cosine,
     /// The area of the light is omitted.
     Area,
     /// The division by the probability of choosing the light is omitted.
     Choice,
+    /// The light is chosen uniformly, and the division by the probability is omitted.
+    UniformChoice,
+    /// The light of point lights and directional lights lacks the factor π.
+    PointPi,
     /// The division by the pdf of the sample is omitted.
     Density,
     /// The sample is divided by the pdf of BSDF sampling instead of its own pdf.
@@ -80,6 +126,16 @@ pub enum RefractionBug {
     Flipped,
     /// The direction does not change.
     Straight,
+    /// The component along the normal has the wrong sign.
+    RootSign,
+    /// The indices of both sides are exchanged, also in Fresnel's equations.
+    Exchanged,
+    /// Reflection and refraction are chosen with probability 1/2, which is not divided out.
+    HalfChosen,
+    /// The Fresnel term is used both for the choice and as a weight.
+    FresnelTwice,
+    /// All light is refracted.
+    NoReflection,
 }
 
 /// Mistakes in a student's environment light.
@@ -90,6 +146,10 @@ pub enum EnvironmentBug {
     Correct,
     /// The environment is upside down.
     UpsideDown,
+    /// The environment is mirrored left to right.
+    Mirrored,
+    /// The environment is turned by 180 degrees about the vertical axis.
+    HalfTurned,
     /// The pdf lacks the sine of the polar angle.
     NoSine,
 }
@@ -111,14 +171,14 @@ pub enum PixelMean {
 pub struct PathBugs {
     /// Power of the cosine at surfaces.
     pub cosine_power: CosinePower,
-    /// The diffuse lobe lacks the factor 1/π. With `true`, this affects only light samples.
-    pub no_pi: Option<bool>,
+    /// Factor 1/π of the diffuse lobe.
+    pub diffuse_pi: DiffusePi,
     /// Method for sampling scattered directions.
     pub direction_sampling: DirectionSampling,
     /// Factor that is omitted from light samples.
     pub missing_factor: MissingFactor,
-    /// Light and BSDF samples are added without MIS weights.
-    pub unweighted: bool,
+    /// Strategies by which lights are found.
+    pub strategies: Strategies,
     /// Russian roulette.
     pub roulette: RouletteBug,
     /// Refraction.
@@ -129,6 +189,12 @@ pub struct PathBugs {
     pub two_sided: bool,
     /// Environment light.
     pub environment: EnvironmentBug,
+    /// Perfect mirrors do not colour the light.
+    pub colorless_mirrors: bool,
+    /// Surfaces that paths hit after a mirror or glass do not emit.
+    pub no_emission_after_delta: bool,
+    /// Textures are upside down.
+    pub flipped_textures: bool,
     /// Method for computing a pixel from its samples.
     pub pixel_mean: PixelMean,
 }

@@ -48,6 +48,12 @@ impl Blocks {
         Blocks { pixels: (0..columns * rows).map(block).collect() }
     }
 
+    /// Returns one pixel of every other block. A quick render of these pixels shows if a mistake
+    /// has any effect.
+    pub fn probe(&self) -> Self {
+        Blocks { pixels: self.pixels.iter().step_by(2).map(|block| vec![block[block.len() / 2]]).collect() }
+    }
+
     /// Returns the block means of a finished picture. Their variance includes only rounding.
     pub fn of_picture(&self, width: u32, values: &[Vec3]) -> BlockMeans {
         let mean = |block: &Vec<(u32, u32)>| {

@@ -5,6 +5,7 @@
 //! means over blocks because their variance is known.
 
 mod blocks;
+mod pooled;
 mod search;
 mod table;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Finds the path tracer mistake that explains a picture.
 
 use super::blocks::{BlockMeans, Blocks};
+use super::pooled::{MeanDifference, mean_difference};
 use super::table::MISTAKES;
 use crate::mistakes::input::{Diagnosis, DiagnosisInput, Explanation, prepare, values};
 use crate::mistakes::pictures::View;
@@ -21,6 +22,15 @@ const MIN_MATCHED: f64 = 0.9;
 /// An explanation is a rival if its residual is at most this many times the residual of the best
 /// one.
 const RIVAL_RATIO: f64 = 3.0;
+/// Maximum misfit beyond 1 of an explanation: a constant, and a fraction of the misfit without
+/// mistakes.
+const MAX_MISFIT: f64 = 0.6;
+const MAX_MISFIT_SHARE: f64 = 0.02;
+/// Minimum amount by which an explanation must reduce the misfit of all blocks together, and its
+/// minimum lead over other explanations, also as a fraction of that amount.
+const MIN_GAIN: f64 = 60.0;
+const MIN_LEAD: f64 = 20.0;
+const MIN_LEAD_SHARE: f64 = 0.05;
 /// Ratio of variances above which one picture counts as noisier than the other.
 const NOISE_RATIO: f64 = 1.5;
 
@@ -36,6 +46,14 @@ struct Trial<'c> {
     candidate: &'c Candidate,
     explained: f64,
     matched: f64,
+    /// See [`BlockMeans::misfit`].
+    misfit: f64,
+}
+
+impl Trial<'_> {
+    fn explanation(&self) -> Explanation {
+        Explanation { mistakes: vec![self.candidate.mistake], explained: self.explained, matched: self.matched }
+    }
 }
 
 /// Returns the fraction of the blocks in which a render of the scene differs from the reference by
@@ -72,6 +90,8 @@ pub(super) struct Search<'a> {
     blocks: Blocks,
     /// Block means of a render without mistakes.
     own: BlockMeans,
+    /// A few pixels, and a render of them without mistakes.
+    probe: (Blocks, BlockMeans),
 }
 
 impl<'a> Search<'a> {
@@ -80,7 +100,9 @@ impl<'a> Search<'a> {
         let (reference, view, base) = prepare(input);
         let blocks = Blocks::new(input.job.width, input.job.height, input.job.sampling.samples());
         let own = blocks.render(&view, &base, input.job.seed);
-        Search { input: *input, reference, view, base, blocks, own }
+        let probe = blocks.probe();
+        let probed = probe.render(&view, &base, input.job.seed);
+        Search { input: *input, reference, view, base, blocks, own, probe: (probe, probed) }
     }
 
     /// Returns the block means of the reference, with the noise of a render.
@@ -106,12 +128,21 @@ impl<'a> Search<'a> {
         }
         let total = own.excess_difference(&test, &noise(own, &test));
         let differing = total.iter().filter(|block| block.1).count();
-        if (differing as f64) < MIN_DIFFERENCE * total.len() as f64 {
+        let is_small = (differing as f64) < MIN_DIFFERENCE * total.len() as f64;
+        let mean = mean_difference(&self.reference, picture, self.input.job.width, self.input.job.height);
+        if is_small && mean.is_none() {
             return Diagnosis { remark: Some(of_noise(ratio)), ..diagnosis };
         }
         let candidates = candidates();
-        let trials = candidates.iter().map(|candidate| trial(candidate, &test, own)).collect();
-        Diagnosis { explanations: decided(trials, &test), ..diagnosis }
+        let before = own.misfit(&test, &noise(own, &test));
+        let mut trials: Vec<Trial> = candidates.iter().map(|candidate| trial(candidate, &test, own)).collect();
+        let mut explanations = if is_small { Vec::new() } else { decided(&mut trials, before, &test) };
+        if explanations.is_empty() {
+            explanations = decided_by_misfit(&mut trials, before, &test);
+        }
+        let closest_trials = trials.iter().take(8).map(Trial::explanation).collect();
+        let remark = mean.filter(|_| explanations.is_empty()).map(of_mean);
+        Diagnosis { explanations, closest_trials, remark, ..diagnosis }
     }
 
     /// Renders the scene with each mistake.
@@ -124,11 +155,14 @@ impl<'a> Search<'a> {
         let candidate = |(i, mistake): (usize, (&'static Mistake, f32))| {
             let mut variant = self.base.clone();
             (mistake.0.apply)(&mut variant, mistake.1);
-            let rendered = self.blocks.render(&self.view, &variant, self.input.job.seed);
+            // The random numbers do not change, so a mistake without an effect changes no bit.
+            let (probe, own) = &self.probe;
+            let has_effect = probe.render(&self.view, &variant, self.input.job.seed).mean != own.mean;
+            let rendered = has_effect.then(|| self.blocks.render(&self.view, &variant, self.input.job.seed));
             progress(0.1 + 0.9 * (i + 1) as f64 / count as f64);
-            Candidate { mistake, rendered }
+            rendered.map(|rendered| Candidate { mistake, rendered })
         };
-        all.into_iter().enumerate().map(candidate).collect()
+        all.into_iter().enumerate().filter_map(candidate).collect()
     }
 }
 
@@ -141,39 +175,60 @@ fn trial<'c>(candidate: &'c Candidate, test: &BlockMeans, own: &BlockMeans) -> T
         (either + usize::from(before.1 || rest.1), agree + usize::from(before.1 && !rest.1))
     });
     let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
-    Trial { candidate, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
+    let misfit = candidate.rendered.misfit(test, &noise);
+    Trial { candidate, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)), misfit }
+}
+
+/// Returns true if the remaining misfit can be attributed to noise and small differences between
+/// programs. `before` is the misfit without mistakes.
+fn fits(trial: &Trial, before: f64) -> bool {
+    trial.misfit - 1.0 < MAX_MISFIT + MAX_MISFIT_SHARE * (before - 1.0).max(0.0)
+}
+
+/// Returns the mistakes that explain differences too small to be visible in single blocks. There
+/// are none if no mistake fits, or if a mistake with a different picture fits nearly as well.
+fn decided_by_misfit(trials: &mut [Trial<'_>], before: f64, test: &BlockMeans) -> Vec<Explanation> {
+    trials.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    let Some(best) = trials.first() else { return Vec::new() };
+    let blocks = test.mean.len().max(1) as f64;
+    let gain = (before - best.misfit) * blocks;
+    if !fits(best, before) || gain < MIN_GAIN || best.misfit - 1.0 > 0.2 * (before - 1.0) {
+        return Vec::new();
+    }
+    let rivals: Vec<&Trial> = trials
+        .iter()
+        .filter(|trial| (trial.misfit - best.misfit) * blocks < MIN_LEAD.max(MIN_LEAD_SHARE * gain))
+        .collect();
+    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(best, rival, test)) {
+        return Vec::new();
+    }
+    let explained = |trial: &Trial| ((before - trial.misfit) / (before - 1.0).max(1e-9)).clamp(0.0, 1.0);
+    rivals.iter().map(|rival| Explanation { explained: explained(rival), ..rival.explanation() }).collect()
+}
+
+/// Returns true if the pictures of two candidates differ in at most a twentieth of the blocks.
+fn alike(best: &Trial, other: &Trial, test: &BlockMeans) -> bool {
+    let noise = noise(&best.candidate.rendered, test);
+    let beyond = best.candidate.rendered.excess_difference(&other.candidate.rendered, &noise);
+    let is_equal = best.candidate.rendered.misfit(&other.candidate.rendered, &noise) < 0.05;
+    is_equal && beyond.iter().filter(|block| block.1).count() * 20 <= test.mean.len()
 }
 
 /// Returns the mistakes that explain the picture. There are none if no mistake fits or if the
 /// choice is ambiguous.
-fn decided(mut trials: Vec<Trial<'_>>, test: &BlockMeans) -> Vec<Explanation> {
+fn decided(trials: &mut [Trial<'_>], before: f64, test: &BlockMeans) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-    let passes = |trial: &&Trial| trial.explained >= MIN_EXPLAINED && trial.matched >= MIN_MATCHED;
+    let passes =
+        |trial: &&Trial| trial.explained >= MIN_EXPLAINED && trial.matched >= MIN_MATCHED && fits(trial, before);
     let Some(best) = trials.iter().find(passes) else { return Vec::new() };
     let rest = |trial: &Trial| 1.0 - trial.explained;
     let rivals: Vec<&Trial> =
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL_RATIO * rest(best) + 0.005).collect();
     // If rivals produce different pictures, naming one of them would be a guess.
-    let alike = |other: &Trial| {
-        let noise: Vec<f64> = noise(&best.candidate.rendered, test);
-        best.candidate
-            .rendered
-            .excess_difference(&other.candidate.rendered, &noise)
-            .iter()
-            .filter(|block| block.1)
-            .count()
-            * 20
-            <= test.mean.len()
-    };
-    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
+    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(best, rival, test)) {
         return Vec::new();
     }
-    let explanation = |trial: &&Trial| Explanation {
-        mistakes: vec![trial.candidate.mistake],
-        explained: trial.explained,
-        matched: trial.matched,
-    };
-    rivals.iter().map(explanation).collect()
+    rivals.iter().map(|rival| rival.explanation()).collect()
 }
 
 /// Estimates the noise variance of a picture relative to that of the reference.
@@ -190,6 +245,18 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
         all[..kept].iter().map(|e| f64::from(*e)).sum::<f64>().max(1e-9)
     };
     energy(test) / energy(reference)
+}
+
+/// Describes a difference of the mean that no mistake explains.
+fn of_mean(mean: MeanDifference) -> String {
+    let percent = 100.0 * (mean.ratio - 1.0);
+    let how = if percent < 0.0 { "darker" } else { "brighter" };
+    let what = if mean.whole { "the picture is" } else { "a part of the picture is" };
+    format!(
+        "cause unknown: {what} {:.1} % {how} on average, which is more than noise, but none of the known mistakes \
+         explains it",
+        percent.abs()
+    )
 }
 
 /// Describes how the noise of two pictures differs if their means do not. `ratio` is the variance

@@ -1,7 +1,8 @@
 //! The table of the mistakes that path tracers can make.
 
 use crate::mistakes::path_bugs::{
-    CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean, RefractionBug, RouletteBug,
+    CosinePower, DiffusePi, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean, RefractionBug, RouletteBug,
+    Strategies,
 };
 use crate::mistakes::table::{Mistake, Values, row};
 
@@ -28,21 +29,39 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-cosine",
         "bounces",
-        "the cosine at the surface {is left out|counts twice}",
-        "throughput *= f * dot(n, wi) / pdf",
-        "throughput *= f {/ pdf|* dot(n, wi) * dot(n, wi) / pdf}",
-        |v, twice| v.paths.cosine_power = if twice == 0.0 { CosinePower::None } else { CosinePower::Twice },
+        "the cosine at the surface {is left out|counts twice|is left out in light samples|counts twice in light \
+         samples|is left out in light samples|is left out for point and directional lights}",
+        "{throughput *= f * dot(n, wi) / pdf|throughput *= f * dot(n, wi) / pdf|L += f * dot(n, wi) * Le / pdf|L += f * \
+         dot(n, wi) * Le / pdf|L += f * dot(n, wi) * Le / pdf|L += f * dot(n, wi) * I}",
+        "{throughput *= f / pdf|throughput *= f * dot(n, wi) * dot(n, wi) / pdf|L += f * Le / pdf|L += f * dot(n, wi) * \
+         dot(n, wi) * Le / pdf|L += f * Le / pdf|L += f * I}",
+        |v, how| {
+            v.paths.cosine_power = [
+                CosinePower::None,
+                CosinePower::Twice,
+                CosinePower::NoneForLights,
+                CosinePower::TwiceForLights,
+                CosinePower::NoneForLights,
+                CosinePower::NoneForPoints,
+            ][(how as usize).min(5)];
+            if how == 4.0 {
+                v.paths.strategies = Strategies::LightSamples;
+            }
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])),
     row(
         "path-no-pi",
         "bounces",
-        "the diffuse BSDF lacks the factor 1/pi{|, but only for light samples}",
+        "the diffuse BSDF lacks the factor 1/pi{|, but only for light samples|, but only for scattered light}",
         "f = albedo / pi",
         "f = albedo",
-        |v, lights| v.paths.no_pi = Some(lights > 0.0),
+        |v, how| {
+            const ALL: [DiffusePi; 3] = [DiffusePi::Missing, DiffusePi::MissingForLights, DiffusePi::MissingForScattered];
+            v.paths.diffuse_pi = ALL[(how as usize).min(2)];
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "path-no-pdf",
         "mis",
@@ -79,11 +98,21 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-local-frame",
         "bounces",
-        "scattered directions are not transformed from the shading frame to world space",
+        "scattered directions are {not transformed from the shading frame to world space|not transformed from the shading \
+         frame to world space, and paths end at those below the surface|distributed about the y axis of the world, not the \
+         normal|distributed about the y axis of the world, not the normal, and paths end at those below the surface}",
         "wi = x t + y b + z n",
-        "wi = (x, y, z)",
-        |v, _| v.paths.direction_sampling = DirectionSampling::LocalFrame,
-    ),
+        "wi = {(x, y, z)|(x, y, z)|(x, z, y)|(x, z, y)}",
+        |v, how| {
+            v.paths.direction_sampling = [
+                DirectionSampling::LocalFrame,
+                DirectionSampling::LocalFrameAbove,
+                DirectionSampling::AboutY,
+                DirectionSampling::AboutYAbove,
+            ][(how as usize).min(3)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
         "path-one-number",
         "bounces",
@@ -98,7 +127,7 @@ pub const MISTAKES: &[Mistake] = &[
         "direct light is counted twice, without weights: by light samples and again where a scattered ray hits the light",
         "light sample: no emission at the next hit; or both with weights that sum to 1",
         "L += Le at every hit, and L += the light sample",
-        |v, _| v.paths.unweighted = true,
+        |v, _| v.paths.strategies = Strategies::Unweighted,
     ),
     row(
         "path-roulette",
@@ -135,15 +164,68 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-refraction",
         "refraction",
-        "refracted directions {use the inverted ratio of the indices|are bent to the wrong side|are not bent}",
+        "refracted directions {use the inverted ratio of the indices|are bent to the wrong side|are not bent|have the wrong \
+         sign of the root}",
         "wi = -eta wo + (eta cos1 - cos2) n, eta = n1 / n2",
-        "{eta = n2 / n1|wi = +eta wo + ...|wi = -wo}",
+        "{eta = n2 / n1|wi = +eta wo + ...|wi = -wo|wi = -eta wo + (eta cos1 + cos2) n}",
         |v, how| {
-            const ALL: [RefractionBug; 3] = [RefractionBug::Inverted, RefractionBug::Flipped, RefractionBug::Straight];
+            const ALL: [RefractionBug; 4] = [
+                RefractionBug::Inverted,
+                RefractionBug::Flipped,
+                RefractionBug::Straight,
+                RefractionBug::RootSign,
+            ];
+            v.paths.refraction = ALL[(how as usize).min(3)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "path-index",
+        "refraction",
+        "the index of refraction is inverted, both in refracted directions and in Fresnel's equations",
+        "n1 outside, n2 inside; exchanged when leaving",
+        "n2 outside, n1 inside",
+        |v, _| v.paths.refraction = RefractionBug::Exchanged,
+    ),
+    row(
+        "path-fresnel",
+        "fresnel",
+        "glass {chooses between reflection and refraction with probability 1/2, but does not divide by it|weights \
+         reflection and refraction by the fraction with which they were already chosen|reflects nothing}",
+        "if (random() < F) reflect, else refract; weight 1",
+        "{if (random() < 1/2) reflect with weight F, else refract with weight 1 - F|if (random() < F) reflect with weight F, \
+         else refract with weight 1 - F|refract}",
+        |v, how| {
+            const ALL: [RefractionBug; 3] =
+                [RefractionBug::HalfChosen, RefractionBug::FresnelTwice, RefractionBug::NoReflection];
             v.paths.refraction = ALL[(how as usize).min(2)];
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "path-mirror-color",
+        "reflection",
+        "mirrors do not colour the light",
+        "throughput *= kr",
+        "(nothing)",
+        |v, _| v.paths.colorless_mirrors = true,
+    ),
+    row(
+        "path-emission-after-mirror",
+        "mis",
+        "lights are black in mirrors and behind glass: their emission is not added after mirrors and glass",
+        "L += throughput * Le at the first hit and after mirrors and glass",
+        "L += throughput * Le at the first hit only",
+        |v, _| v.paths.no_emission_after_delta = true,
+    ),
+    row(
+        "path-texture-flipped",
+        "flat",
+        "textures are upside down",
+        "y = (1 - v) height",
+        "y = v height",
+        |v, _| v.paths.flipped_textures = true,
+    ),
     row(
         "path-texture",
         "flat",
@@ -155,15 +237,31 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-light-factor",
         "mis",
-        "light samples lack {1 / d^2|the cosine at the light|the area of the light|the division by the probability of choosing the light}",
-        "L = f cos(n) Le cos(light) area / (d^2 probability)",
-        "L = f cos(n) Le {cos(light) area / probability|area / (d^2 probability)|cos(light) / (d^2 probability)|cos(light) area / d^2}",
+        "light samples {lack 1 / d^2|lack the cosine at the light|lack the area of the light|lack the division by the \
+         probability of choosing the light|lack the division by the probability of choosing the light|have 1 / d instead of 1 \
+         / d^2|of point and directional lights lack the factor pi|lack 1 / d^2|have 1 / d instead of 1 / d^2}",
+        "L = f cos(n) {Le|Le|Le|Le|Le|Le|pi Le|Le|Le} cos(light) area / (d^2 probability)",
+        "L = f cos(n) Le {cos(light) area / probability|area / (d^2 probability)|cos(light) / (d^2 probability)|cos(light) \
+         area / d^2|cos(light) area / d^2|cos(light) area / (d probability)|cos(light) area / (d^2 probability)|cos(light) \
+         area / probability|cos(light) area / (d probability)}",
         |v, how| {
-            const ALL: [MissingFactor; 4] = [MissingFactor::Distance, MissingFactor::Cosine, MissingFactor::Area, MissingFactor::Choice];
-            v.paths.missing_factor = ALL[(how as usize).min(3)];
+            v.paths.missing_factor = [
+                MissingFactor::Distance,
+                MissingFactor::Cosine,
+                MissingFactor::Area,
+                MissingFactor::Choice,
+                MissingFactor::UniformChoice,
+                MissingFactor::DistanceOnce,
+                MissingFactor::PointPi,
+                MissingFactor::Distance,
+                MissingFactor::DistanceOnce,
+            ][(how as usize).min(8)];
+            if how >= 7.0 {
+                v.paths.strategies = Strategies::LightSamples;
+            }
         },
     )
-    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])),
     row(
         "path-two-sided",
         "soft-shadows",
@@ -175,12 +273,24 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-sky",
         "mis",
-        "the environment is {upside down|sampled with a pdf that lacks sin(theta)}",
-        "theta from the top, pdf = p(u, v) / (2 pi^2 sin(theta))",
-        "{theta from the bottom|pdf = p(u, v) / (2 pi^2)}",
-        |v, how| v.paths.environment = if how == 0.0 { EnvironmentBug::UpsideDown } else { EnvironmentBug::NoSine },
+        "the environment is {upside down|sampled with a pdf that lacks sin(theta)|mirrored left to right|turned by half a \
+         turn|sampled with a pdf that lacks sin(theta)}",
+        "theta from the top, phi = atan2(x, -z), pdf = p(u, v) / (2 pi^2 sin(theta))",
+        "{theta from the bottom|pdf = p(u, v) / (2 pi^2)|phi = atan2(-x, -z)|phi = atan2(-x, z)|pdf = p(u, v) / (2 pi^2)}",
+        |v, how| {
+            v.paths.environment = [
+                EnvironmentBug::UpsideDown,
+                EnvironmentBug::NoSine,
+                EnvironmentBug::Mirrored,
+                EnvironmentBug::HalfTurned,
+                EnvironmentBug::NoSine,
+            ][(how as usize).min(4)];
+            if how == 4.0 {
+                v.paths.strategies = Strategies::LightSamples;
+            }
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0])),
     row(
         "path-mean",
         "supersampling",

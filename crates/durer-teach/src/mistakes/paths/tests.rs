@@ -51,14 +51,28 @@ Group {
   MaterialIndex 1 TriangleMesh { obj_file floor.obj } }
 ";
 
-/// A sphere of glass on a floor below an area light.
+/// A point light and a directional light on matte surfaces.
+const POINTS: &str = "PerspectiveCamera { center 0 1.5 6 direction 0 -0.2 -1 up 0 1 0 angle 45 }
+Background { color 0.1 0.1 0.15 }
+Lights { PointLight { position 2 3 2 color 4 3.5 3 attenuation 0 0 1 }
+  DirectionalLight { direction 1 -1.5 -0.7 color 0.3 0.35 0.4 } }
+Materials { PhongMaterial { diffuseColor 0.7 0.6 0.5 } PhongMaterial { diffuseColor 0.3 0.4 0.7 } }
+Group {
+  MaterialIndex 0 Rectangle { corner -4 0 -4 edge0 0 0 8 edge1 8 0 0 }
+  MaterialIndex 0 Rectangle { corner -4 0 -3 edge0 8 0 0 edge1 0 3 0 }
+  MaterialIndex 1 Sphere { center 0 1 0.5 radius 1 } }
+";
+
+/// A sphere of glass and a mirror on a floor below an area light.
 const GLASS: &str = "PerspectiveCamera { center 0 1.5 6 direction 0 -0.15 -1 up 0 1 0 angle 45 }
 Background { color 0.3 0.35 0.4 }
 Materials {
   PrincipledMaterial { baseColor 0.7 0.5 0.3 specularWeight 0 }
   PrincipledMaterial { transmissionWeight 1 specularRoughness 0 specularIor 1.5 }
-  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 12 } }
+  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 12 }
+  PhongMaterial { diffuseColor 0 0 0 reflectiveColor 0.9 0.6 0.4 } }
 Group {
+  MaterialIndex 3 Sphere { center -1.6 0.7 1 radius 0.7 }
   MaterialIndex 0 Rectangle { corner -4 0 -4 edge0 0 0 8 edge1 8 0 0 }
   MaterialIndex 0 Rectangle { corner -4 0 -3 edge0 8 0 0 edge1 0 3 0 }
   MaterialIndex 1 Sphere { center 0 1.05 0.5 radius 1 }
@@ -120,10 +134,22 @@ fn found(text: &str, bounces: u32, changes: &[&dyn Fn(&mut SceneVariant)]) -> Ve
 }
 
 /// Mistakes that the room does not show, with the scene that shows them, if there is one.
-const ELSEWHERE: [(&str, f32, Option<&str>); 9] = [
+const ELSEWHERE: [(&str, f32, Option<&str>); 22] = [
     ("path-sky", 0.0, Some(SKY)),
     ("path-sky", 1.0, Some(SKY)),
+    ("path-sky", 2.0, Some(SKY)),
+    ("path-sky", 3.0, Some(SKY)),
+    ("path-sky", 4.0, Some(SKY)),
     ("path-texture", 0.0, Some(SKY)),
+    ("path-texture-flipped", 0.0, Some(SKY)),
+    ("path-cosine", 5.0, Some(POINTS)),
+    ("path-light-factor", 6.0, Some(POINTS)),
+    ("path-mirror-color", 0.0, Some(GLASS)),
+    ("path-emission-after-mirror", 0.0, Some(GLASS)),
+    ("path-index", 0.0, Some(GLASS)),
+    ("path-fresnel", 0.0, Some(GLASS)),
+    ("path-fresnel", 1.0, Some(GLASS)),
+    ("path-fresnel", 2.0, Some(GLASS)),
     // It is invisible unless the camera or a light is in the glass.
     ("path-eta-squared", 0.0, None),
     ("path-eta-squared", 1.0, Some(GLASS)),
@@ -131,6 +157,7 @@ const ELSEWHERE: [(&str, f32, Option<&str>); 9] = [
     ("path-refraction", 0.0, Some(GLASS)),
     ("path-refraction", 1.0, Some(GLASS)),
     ("path-refraction", 2.0, Some(GLASS)),
+    ("path-refraction", 3.0, Some(GLASS)),
 ];
 
 /// Mistakes that the noise of these small pictures can hide. They are named correctly or not at
@@ -141,7 +168,7 @@ const HIDDEN_BY_NOISE: [(&str, f32); 4] =
 #[test]
 fn each_mistake_is_named() {
     let mut wrong = Vec::new();
-    for (text, bounces) in [(ROOM, 2), (ROOM, 12), (SKY, 3), (GLASS, 5)] {
+    for (text, bounces) in [(ROOM, 2), (ROOM, 12), (SKY, 3), (GLASS, 5), (POINTS, 3)] {
         let rows = MISTAKES.iter().flat_map(|row| row.values.numbers(2).into_iter().map(move |value| (row, value)));
         let rows = rows.filter(|(row, value)| {
             let elsewhere = ELSEWHERE.iter().find(|(name, number, _)| *name == row.name && number == value);

@@ -3,7 +3,8 @@
 //! without fog, it has the same expected value as the renderer's path tracer.
 
 use crate::mistakes::path_bugs::{
-    CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs, RefractionBug, RouletteBug,
+    CosinePower, DiffusePi, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs, RefractionBug, RouletteBug,
+    Strategies,
 };
 use crate::mistakes::variant::SceneVariant;
 use durer_render::integrator::media::MediumStack;
@@ -50,6 +51,8 @@ pub struct BuggyPathTracer<'w> {
     world: &'w World,
     settings: RenderSettings,
     bugs: PathBugs,
+    /// Number of lights that a simple program chooses from.
+    light_count: f32,
     right: Whitted<'w>,
     lanes: Lanes,
 }
@@ -59,7 +62,10 @@ impl<'w> BuggyPathTracer<'w> {
     pub fn new(variant: &'w SceneVariant) -> Self {
         let (world, settings) = (&variant.world, variant.settings);
         let right = Whitted { world, settings, cancel: None };
-        BuggyPathTracer { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
+        let emissive = world.objects().iter().filter(|object| world.may_emit(object.material)).count();
+        let light_count = (world.lights().len() + emissive + usize::from(world.environment().is_some())).max(1) as f32;
+        let lanes = Lanes::new(ColorMode::Rgb, 0.5);
+        BuggyPathTracer { world, settings, bugs: variant.paths, light_count, right, lanes }
     }
 
     /// Returns the radiance along a camera ray for one sample of a pixel. `throughput` belongs to
@@ -86,7 +92,10 @@ impl<'w> BuggyPathTracer<'w> {
             let Some(hit) = world.closest(&ray, &mut ()) else {
                 return sum + *throughput * self.background(ray.dir(), last, from_eye);
             };
-            let at = world.interaction(ray, hit);
+            let mut at = world.interaction(ray, hit);
+            if let (Some(uv), true) = (at.surface.uv.get(), self.bugs.flipped_textures) {
+                at.surface.uv = Vec2::new(uv.x, 1.0 - uv.y).into();
+            }
             let transition = self.right.transition(&at, &media);
             let nothing = transition
                 .as_ref()
@@ -97,12 +106,15 @@ impl<'w> BuggyPathTracer<'w> {
                 ray.rounded.t_min = hit.t;
                 continue;
             }
-            sum += *throughput * self.emission(&at, last);
+            if depth == 0 || last.is_some() || !self.bugs.no_emission_after_delta {
+                sum += *throughput * self.emission(&at, last);
+            }
             if depth > self.settings.bounces {
                 return sum;
             }
             let eta = transition.as_ref().map_or(1.0, |transition| transition.ior_behind / transition.ior_front);
-            let shading = world.shading(&at, eta, lanes);
+            let own_eta = if self.bugs.refraction == RefractionBug::Exchanged { 1.0 / eta } else { eta };
+            let shading = world.shading(&at, own_eta, lanes);
             if shading.bsdf.is_black() {
                 return sum;
             }
@@ -113,6 +125,8 @@ impl<'w> BuggyPathTracer<'w> {
             }
             let Some((wi, weight, pdf)) = self.scattered(&shading, numbers) else { return sum };
             let Some((wi, weight)) = self.with_refraction_bugs(&shading, wi, weight, eta) else { return sum };
+            let is_mirror = pdf == 0.0 && !shading.bsdf.passes_light() && !shading.bsdf.has_non_delta();
+            let weight = if is_mirror && self.bugs.colorless_mirrors { Spectrum::ONE } else { weight };
             *throughput *= weight;
             let survival = if depth < MIN_ROULETTE_DEPTH { 1.0 } else { throughput.max_element().min(MAX_SURVIVAL) };
             if numbers.next() >= survival {
@@ -142,11 +156,21 @@ impl<'w> BuggyPathTracer<'w> {
 
     /// Returns the MIS weight of a light that a scattered ray hits.
     fn weight(&self, pdf: f32, light: f32) -> f32 {
-        if self.bugs.unweighted { 1.0 } else { power(pdf, light) }
+        match self.bugs.strategies {
+            Strategies::Weighted => power(pdf, light),
+            Strategies::Unweighted => 1.0,
+            Strategies::LightSamples => 0.0,
+        }
     }
 
+    /// Returns the direction in which the environment is looked up.
     fn turned(&self, dir: Vec3) -> Vec3 {
-        if self.bugs.environment == EnvironmentBug::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
+        match self.bugs.environment {
+            EnvironmentBug::UpsideDown => Vec3::new(dir.x, -dir.y, dir.z),
+            EnvironmentBug::Mirrored => Vec3::new(-dir.x, dir.y, dir.z),
+            EnvironmentBug::HalfTurned => Vec3::new(-dir.x, dir.y, -dir.z),
+            EnvironmentBug::Correct | EnvironmentBug::NoSine => dir,
+        }
     }
 
     fn background(&self, dir: Vec3, last: Option<(Receiver, f32)>, from_eye: bool) -> Spectrum {
@@ -189,7 +213,7 @@ impl<'w> BuggyPathTracer<'w> {
         let Some(choice) = emitters.choose(self.world, to, choice) else { return Spectrum::ZERO };
         let Some(light) = emitters.sample(self.world, &choice, to.point, u) else { return Spectrum::ZERO };
         let (value, bsdf_pdf) = shading.eval(light.wi);
-        let value = self.with_cosine_bugs(value, shading, light.wi, true);
+        let value = self.with_cosine_bugs(value, shading, light.wi, Some(light.pdf == 0.0));
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
@@ -199,11 +223,12 @@ impl<'w> BuggyPathTracer<'w> {
             return Spectrum::ZERO;
         }
         let pdf = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
-        let weight = if light.pdf == 0.0 || self.bugs.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
+        let is_alone = light.pdf == 0.0 || self.bugs.strategies != Strategies::Weighted;
+        let weight = if is_alone { 1.0 } else { power(pdf, bsdf_pdf) };
         let radiance = match (choice.is_sky(), self.bugs.environment) {
-            (true, EnvironmentBug::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
+            (false, _) | (true, EnvironmentBug::Correct) => light.radiance,
             (true, EnvironmentBug::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
-            _ => light.radiance,
+            (true, _) => emitters.sky(self.world, self.turned(light.wi)).0,
         };
         value * (weight / pdf) * self.error_factor(&light, pdf, bsdf_pdf) * self.lanes.light(radiance)
     }
@@ -226,15 +251,18 @@ impl<'w> BuggyPathTracer<'w> {
         match self.bugs.missing_factor {
             MissingFactor::Nothing => 1.0,
             MissingFactor::Distance if light.reach.is_finite() => light.reach * light.reach,
+            MissingFactor::DistanceOnce if light.reach.is_finite() => light.reach,
             MissingFactor::Cosine if extended => 1.0 / light.cosine.max(1e-3),
             MissingFactor::Area if extended => match light.light {
                 LightId::Surface(object, part) => self.area(object, part).map_or(1.0, |area| 1.0 / area),
                 LightId::Light(_) | LightId::Environment => 1.0,
             },
             MissingFactor::Choice => light.choice,
+            MissingFactor::UniformChoice => 1.0 / self.light_count,
+            MissingFactor::PointPi if light.pdf == 0.0 => 1.0 / PI,
             MissingFactor::Density => pdf,
             MissingFactor::OwnDensity if extended => pdf / bsdf_pdf.max(1e-4),
-            MissingFactor::Distance | MissingFactor::Cosine | MissingFactor::Area | MissingFactor::OwnDensity => 1.0,
+            _ => 1.0,
         }
     }
 
@@ -259,16 +287,22 @@ impl<'w> BuggyPathTracer<'w> {
         }
     }
 
-    /// Applies the mistakes in the cosine and in 1/π to a product of BSDF and cosine.
-    fn with_cosine_bugs(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
+    /// Applies the mistakes in the cosine and in 1/π to a product of BSDF and cosine. `light` is
+    /// `None` for scattered light, and it is true for point lights and directional lights.
+    fn with_cosine_bugs(&self, value: Spectrum, shading: &Shading, wi: Vec3, light: Option<bool>) -> Spectrum {
         let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
         let value = match self.bugs.cosine_power {
-            CosinePower::Correct => value,
             CosinePower::None => value / cosine,
             CosinePower::Twice => value * cosine,
+            CosinePower::NoneForLights if light.is_some() => value / cosine,
+            CosinePower::TwiceForLights if light.is_some() => value * cosine,
+            CosinePower::NoneForPoints if light == Some(true) => value / cosine,
+            _ => value,
         };
-        match self.bugs.no_pi {
-            Some(lights_only) if sampled_light || !lights_only => value * PI,
+        match self.bugs.diffuse_pi {
+            DiffusePi::Missing => value * PI,
+            DiffusePi::MissingForLights if light.is_some() => value * PI,
+            DiffusePi::MissingForScattered if light.is_none() => value * PI,
             _ => value,
         }
     }
@@ -289,18 +323,25 @@ impl<'w> BuggyPathTracer<'w> {
             let local = Vec3::new(side * cos as f32, side * sin as f32, u.y.max(1e-4));
             let wi = shading.frame.to_world(local);
             let pdf = local.z / PI;
-            let value = self.with_cosine_bugs(shading.eval(wi).0, shading, wi, false);
+            let value = self.with_cosine_bugs(shading.eval(wi).0, shading, wi, None);
             return Some((wi, value / pdf, pdf));
         }
         let wi = shading.frame.to_world(sample.wi);
         if (wi.dot(shading.n_geo) < 0.0) != (sample.wi.z < 0.0) && !shading.bsdf.is_fibre() {
             return None;
         }
-        let weight = self.with_cosine_bugs(sample.weight, shading, wi, false);
+        let weight = self.with_cosine_bugs(sample.weight, shading, wi, None);
+        let about_y = Vec3::new(sample.wi.x, sample.wi.z, sample.wi.y);
+        let above = |wi: Vec3| wi.dot(shading.frame.normal) > 0.0;
         Some(match self.bugs.direction_sampling {
             DirectionSampling::Undivided => (wi, weight * sample.pdf, sample.pdf),
             DirectionSampling::UniformPdf => (wi, weight * (sample.pdf * 2.0 * PI), sample.pdf),
             DirectionSampling::LocalFrame => (sample.wi, weight, sample.pdf),
+            DirectionSampling::AboutY => (about_y, weight, sample.pdf),
+            DirectionSampling::LocalFrameAbove if !above(sample.wi) => return None,
+            DirectionSampling::LocalFrameAbove => (sample.wi, weight, sample.pdf),
+            DirectionSampling::AboutYAbove if !above(about_y) => return None,
+            DirectionSampling::AboutYAbove => (about_y, weight, sample.pdf),
             _ => (wi, weight, sample.pdf),
         })
     }
@@ -316,13 +357,27 @@ impl<'w> BuggyPathTracer<'w> {
         eta: f32,
     ) -> Option<(Vec3, Spectrum)> {
         let (n, wo) = (shading.frame.normal, shading.frame.to_world(shading.wo));
+        let fresnel = if shading.bsdf.passes_light() { fresnel(wo.dot(n).abs(), eta) } else { 1.0 };
         if wi.dot(n) * wo.dot(n) >= 0.0 {
-            return Some((wi, weight));
+            return match self.bugs.refraction {
+                RefractionBug::HalfChosen if fresnel < 1.0 => Some((wi, 0.5 * weight)),
+                RefractionBug::FresnelTwice => Some((wi, fresnel * weight)),
+                // What would be reflected is refracted instead.
+                RefractionBug::NoReflection if fresnel < 1.0 => {
+                    let tangent = (wo.dot(n) * n - wo) / eta;
+                    let cosine = (1.0 - tangent.length_squared()).max(0.0).sqrt();
+                    Some((tangent - n * (cosine * wo.dot(n).signum()), weight / (eta * eta)))
+                }
+                _ => Some((wi, weight)),
+            };
         }
         let glass = eta.max(1.0 / eta);
         let tangent = wi - wi.dot(n) * n;
         Some(match self.bugs.refraction {
-            RefractionBug::Correct => (wi, weight),
+            RefractionBug::Correct | RefractionBug::Exchanged | RefractionBug::NoReflection => (wi, weight),
+            RefractionBug::HalfChosen => (wi, 0.5 * weight),
+            RefractionBug::FresnelTwice => (wi, (1.0 - fresnel) * weight),
+            RefractionBug::RootSign => (wi - 2.0 * wi.dot(n) * n, weight),
             RefractionBug::Unscaled => (wi, weight * (eta * eta)),
             RefractionBug::DividedTwice => (wi, weight * (eta * eta / (glass * glass))),
             RefractionBug::MultipliedTwice => (wi, weight * (eta * eta * glass * glass)),
@@ -338,6 +393,18 @@ impl<'w> BuggyPathTracer<'w> {
             RefractionBug::Straight => (-wo, weight),
         })
     }
+}
+
+/// Returns the fraction of unpolarised light that a surface reflects. `eta` is the index of
+/// refraction behind the surface, divided by the index in front.
+fn fresnel(cosine: f32, eta: f32) -> f32 {
+    let k = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+    if k <= 0.0 {
+        return 1.0;
+    }
+    let behind = k.sqrt();
+    let (s, p) = ((cosine - eta * behind) / (cosine + eta * behind), (eta * cosine - behind) / (eta * cosine + behind));
+    0.5 * (s * s + p * p)
 }
 
 /// Returns the weight that the power heuristic gives to a sample with pdf `a`.
