@@ -18,7 +18,7 @@ use durer_render::integrator::media::MediumTransition;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{SpecularBlend, fresnel_share};
 use durer_render::integrator::{RenderSettings, Whitted, refract};
-use durer_render::world::{Epsilon, Geometry, SurfaceInteraction, WeightedMaterial, World};
+use durer_render::world::{Epsilon, Geometry, Object, SurfaceInteraction, WeightedMaterial, World};
 use durer_scene::camera::Projection;
 use durer_scene::light::LightLiSample;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
@@ -35,6 +35,7 @@ pub struct BuggyTracer<'w> {
     settings: RenderSettings,
     bugs: &'w Bugs,
     right: Whitted<'w>,
+    shadow_world: Option<&'w World>,
 }
 
 /// State that [`BuggyTracer`] passes from a ray to its reflected and transmitted rays.
@@ -49,7 +50,13 @@ struct RayState {
 impl<'w> BuggyTracer<'w> {
     /// Creates a tracer that renders `world` with the mistakes in `bugs`.
     pub fn new(world: &'w World, settings: RenderSettings, bugs: &'w Bugs) -> Self {
-        BuggyTracer { world, settings, bugs, right: Whitted { world, settings, cancel: None } }
+        let right = Whitted { world, settings, cancel: None };
+        BuggyTracer { world, settings, bugs, right, shadow_world: None }
+    }
+
+    /// Traces shadow rays in another world, if one is given.
+    pub fn with_shadow_world(self, shadow_world: Option<&'w World>) -> Self {
+        BuggyTracer { shadow_world, ..self }
     }
 
     /// Returns the radiance along a camera ray.
@@ -62,7 +69,11 @@ impl<'w> BuggyTracer<'w> {
         let mut rest = *ray;
         // With some mistakes, a ray hits the same surface again and again, so the loop is limited.
         for _ in 0..64 {
-            let behind = self.bugs.behind.is_some_and(|rays| rays == BehindOrigin::All || path.first);
+            let behind = match self.bugs.behind {
+                Some(BehindOrigin::All) => true,
+                Some(BehindOrigin::Camera) => path.first,
+                Some(BehindOrigin::Beyond) | None => false,
+            };
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
             let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
             let Some((hit, t)) = self.closest(&reaching) else { break };
@@ -112,6 +123,9 @@ impl<'w> BuggyTracer<'w> {
         if bugs.flat {
             surface.n_shade = surface.n_geo;
         }
+        if let (Some(area), true) = (triangle_area(object, hit.part), bugs.long_triangles) {
+            surface.n_shade *= 2.0 * area;
+        }
         if let (Some(to_world), true) = (&object.to_world, bugs.normals != Normals::Correct) {
             let local = to_world.inverse_normal(surface.n_shade);
             surface.n_shade = match bugs.normals {
@@ -121,6 +135,11 @@ impl<'w> BuggyTracer<'w> {
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
                 Normals::Transposed => to_world.inverse_normal(local),
                 Normals::LongMoved => to_world.vector(local),
+                Normals::MovedPoint => object.world_point(local - object.center).normalize_or(surface.n_shade),
+                Normals::MovedTwice => {
+                    let long = to_world.unnormalized_normal(local);
+                    object.world_point(long - object.center).normalize_or(surface.n_shade)
+                }
             };
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.colors.uv_permutation > 0)
@@ -167,15 +186,25 @@ impl<'w> BuggyTracer<'w> {
         let black = from_behind && !self.settings.shade_back && world.shading_rules().black_backs;
         let turned = from_behind && (self.settings.shade_back || bugs.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
-        let n = if world.shading_rules().unit_light { n.normalize_or(n) } else { n };
+        let n = if world.shading_rules().unit_light && !bugs.long_triangles { n.normalize_or(n) } else { n };
         if world.shading_rules().spoiled_normals && n.is_nan() {
             return Color::ZERO;
         }
         let parts = self.materials_at(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
-        if !black || bugs.faced {
+        let view = match bugs.highlights.from_eye {
+            true => (surface.position - world.camera().pose().center).normalize_or(ray.dir()),
+            false => ray.dir(),
+        };
+        if bugs.unlit {
+            color = parts.iter().map(|part| part.share * self.diffuse_color(part.phong, at)).sum();
+        } else if !black || bugs.faced {
             let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, at)).collect();
-            let rounds = if bugs.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
+            let rounds = match bugs.ambient {
+                _ if bugs.bounces.no_ambient && !path.first => 0,
+                Ambient::EachLight => world.lights().len(),
+                _ => 1,
+            };
             let mut ambient_seen = Color::ZERO;
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
@@ -203,7 +232,8 @@ impl<'w> BuggyTracer<'w> {
                 }
                 let before = color;
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
-                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &li);
+                    let highlight = part.phong.highlight.filter(|_| path.first || !bugs.highlights.first_only);
+                    let direct = |diffuse| self.direct(highlight, diffuse, n, view, light, &li);
                     if bugs.shadows.diffuse_left && visible != Color::ONE {
                         color += part.share * (Color::ONE - visible) * (direct(diffuse) - direct(Color::ZERO));
                     }
@@ -250,6 +280,9 @@ impl<'w> BuggyTracer<'w> {
         if path.bounces > 0 {
             let rounds = if bugs.bounces.each_light { world.lights().len() } else { 1 };
             let secondary = self.secondary(at, &parts, transition.unwrap_or_default(), path);
+            if bugs.bounces.total == TotalReflection::Black && secondary.is_nan() {
+                return Color::ZERO;
+            }
             for _ in 0..rounds {
                 color += secondary;
             }
@@ -298,6 +331,9 @@ impl<'w> BuggyTracer<'w> {
         if bugs.from_eye {
             let eye = self.world.camera().pose().center;
             ray = Ray { t_min: 1e-4, t_max: reach, ..Ray::new(eye, way) }.into();
+        }
+        if let Some(world) = self.shadow_world {
+            return if world.occluded(&ray, &mut ()) { Color::ZERO } else { Color::ONE };
         }
         if bugs.no_glass {
             return self.visible_through_glass(ray, epsilon);
@@ -359,6 +395,7 @@ impl<'w> BuggyTracer<'w> {
         let eta = match bugs.glass {
             Glass::Correct
             | Glass::Straight
+            | Glass::StraightUnlessTotal
             | Glass::Outward
             | Glass::RootAdded
             | Glass::SignChanged
@@ -374,6 +411,7 @@ impl<'w> BuggyTracer<'w> {
         let bent = match (transparent == Color::ZERO, bugs.glass) {
             (true, _) => None,
             (false, Glass::Straight) => Some(ray.dir()),
+            (false, Glass::StraightUnlessTotal) => refract(ray.dir(), n, eta).map(|_| ray.dir()),
             (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, Glass::SignChanged | Glass::NoRoot | Glass::Unsquared) => {
@@ -392,7 +430,12 @@ impl<'w> BuggyTracer<'w> {
             TotalReflection::Clamped if is_total => Some(eta * (ray.dir() - ray.dir().dot(n) * n)),
             TotalReflection::Mirrored if is_total => Some(mirrored),
             TotalReflection::Straight if is_total => Some(ray.dir()),
-            TotalReflection::NotANumber if is_total => return Color::NAN,
+            TotalReflection::Absolute if is_total => {
+                let c = -ray.dir().dot(n);
+                let root = (1.0 - eta * eta * (1.0 - c * c)).abs().sqrt();
+                Some(eta * ray.dir() + (eta * c - root) * n)
+            }
+            TotalReflection::NotANumber | TotalReflection::Black if is_total => return Color::NAN,
             _ => bent,
         };
         let transmitted = match rules.raw_refraction {
@@ -438,7 +481,13 @@ impl<'w> BuggyTracer<'w> {
                 true => weight * parts.iter().map(|p| p.share * self.diffuse_color(p.phong, at)).sum::<Color>(),
                 false => weight,
             };
-            color += self.bounce(surface, mirrored, weight, path.clone());
+            let start = match bugs.from_eye {
+                true => {
+                    SurfacePoint { position: self.world.camera().pose().center, rounding_error: Vec3::ZERO, ..*surface }
+                }
+                false => *surface,
+            };
+            color += self.bounce(&start, mirrored, weight, path.clone());
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !bugs.no_glass) {
             let weight = if bugs.glass_in_full { Color::ONE } else { transparent };
@@ -483,6 +532,18 @@ fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
         Mirror::Negated => -reflect(d, n),
         Mirror::Along => d - d.dot(n) * n,
         Mirror::Plus => d + 2.0 * d.dot(n) * n,
+        Mirror::Multiple(factor) => d - f32::from(factor) * d.dot(n) * n,
         Mirror::Normal => n,
     }
+}
+
+/// Returns the area of a flat triangle in an object without a transform.
+fn triangle_area(object: &Object, part: u32) -> Option<f32> {
+    let [a, b, c] = match &object.geometry {
+        _ if object.to_world.is_some() => return None,
+        Geometry::Mesh(tree) if tree.mesh.is_flat() => tree.mesh.corners(part),
+        Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
+        _ => return None,
+    };
+    Some(0.5 * (b - a).cross(c - a).length())
 }

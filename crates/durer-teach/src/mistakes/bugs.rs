@@ -53,6 +53,10 @@ pub enum Roots {
     FourWhole,
     /// The roots are (-b ± √(b² - a c)) / 2a.
     TwiceA,
+    /// The roots are -b ± √(b² - c).
+    Unit,
+    /// The roots are -b ± √(b² - a c).
+    UnitDivisor,
 }
 
 /// Formula for the normal of a sphere at a point p.
@@ -83,6 +87,10 @@ pub enum Normals {
     Transposed,
     /// The matrix is that of points, and the result is not normalised.
     LongMoved,
+    /// The normal is transformed as a point, including the translation.
+    MovedPoint,
+    /// The correct result is then transformed by M as a point.
+    MovedTwice,
 }
 
 /// Method by which a student's tracer adds the ambient light.
@@ -142,6 +150,8 @@ pub enum BehindOrigin {
     All,
     /// Camera rays.
     Camera,
+    /// Every ray, except for hits within epsilon of the origin.
+    Beyond,
 }
 
 /// Method by which a student's tracer adds up the contributions of the lights.
@@ -216,6 +226,8 @@ pub enum Mirror {
     Along,
     /// The direction is d + 2 (d·N) N.
     Plus,
+    /// The direction is d - k (d·N) N with this k.
+    Multiple(u8),
     /// N.
     Normal,
 }
@@ -232,6 +244,8 @@ pub enum Glass {
     IndicesNotSwapped,
     /// The ray is not refracted.
     Straight,
+    /// The ray is not refracted, but there is none in the case of total internal reflection.
+    StraightUnlessTotal,
     /// The outward normal is also used when the ray leaves the object.
     Outward,
     /// The square root is added instead of subtracted.
@@ -263,6 +277,10 @@ pub enum TotalReflection {
     Straight,
     /// The root is not a number, which makes the pixel black.
     NotANumber,
+    /// A negative number below the square root is replaced by its absolute value.
+    Absolute,
+    /// The hit is black.
+    Black,
 }
 
 /// Fresnel term of glass in a student's tracer.
@@ -332,6 +350,10 @@ pub struct HighlightBugs {
     pub everywhere: bool,
     /// Direction R in Phong's model.
     pub mirror: Mirror,
+    /// The view direction points to the eye, even at hits of mirrored rays.
+    pub from_eye: bool,
+    /// Only the first hit of a camera ray has highlights.
+    pub first_only: bool,
 }
 
 /// Direction of the shadow rays in a student's tracer.
@@ -431,6 +453,10 @@ pub struct SecondaryBugs {
     pub unit: bool,
     /// Only the first hit of a camera ray has shadows.
     pub unshadowed: bool,
+    /// Only the first hit of a camera ray has ambient light.
+    pub no_ambient: bool,
+    /// Mirrored rays start at the eye.
+    pub from_eye: bool,
     /// Distance at which secondary rays start, if it is different.
     pub epsilon: Option<f32>,
 }
@@ -457,6 +483,10 @@ pub struct Bugs {
     pub flat: bool,
     /// Triangle normals are negated.
     pub triangles_turned: bool,
+    /// Normals of triangles that are not transformed are not normalised.
+    pub long_triangles: bool,
+    /// Surfaces have their diffuse colour, without any light.
+    pub unlit: bool,
     /// Sphere normals point inwards.
     pub spheres_turned: bool,
     /// Plane normals are negated.

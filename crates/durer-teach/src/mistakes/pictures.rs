@@ -28,7 +28,8 @@ impl View<'_> {
     /// Renders pixels as linear light.
     pub fn light(&self, variant: &SceneVariant, pixels: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
-        let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs);
+        let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs)
+            .with_shadow_world(variant.shadow_world.as_deref());
         let samples = sample_places(&variant.world, self.job);
         let pixel = |&(x, y): &(u32, u32)| {
             let (mut sum, mut weights) = (Color::ZERO, 0.0);

@@ -381,6 +381,95 @@ fn mistakes_in_normals_glass_and_factors_are_named() {
     }
 }
 
+/// Mistakes that [`SCENE`] shows if it is bright, has a longer view direction and a coloured mirror
+/// with a highlight.
+const IN_MIRRORS_AND_TRANSFORMS: [(&str, f32); 24] = [
+    ("scale-factors", 0.0),
+    ("scale-factors", 1.0),
+    ("rotation-axis", 6.0),
+    ("sphere-unit-direction", 0.0),
+    ("sphere-unit-direction", 1.0),
+    ("normals-translated", 0.0),
+    ("normals-translated", 1.0),
+    ("transforms-inverted", 0.0),
+    ("transforms-inverted", 1.0),
+    ("triangles-long", 0.0),
+    ("direction-not-unit", 1.0),
+    ("angle-not-degrees", 0.0),
+    ("mirror-multiple", 0.0),
+    ("mirror-multiple", 2.0),
+    ("mirror-from-eye", 0.0),
+    ("mirror-one-channel", 0.0),
+    ("secondary-no-ambient", 0.0),
+    ("secondary-no-highlights", 0.0),
+    ("highlight-from-eye", 0.0),
+    ("colors-exchanged", 0.0),
+    ("unlit", 0.0),
+    ("light-colors-equal", 0.0),
+    ("shadows-untransformed", 0.0),
+    ("shadows-of-spheres", 0.0),
+];
+
+#[test]
+fn mistakes_in_mirrors_and_transforms_are_named() {
+    let scene = SCENE
+        .replace("0.6 0.5 0.5", "1.1 0.8 0.5")
+        .replace("direction 0 -0.1 -1", "direction 0 -0.2 -2")
+        .replace("reflectiveColor 0.5 0.5 0.5", "specularColor 0.5 0.5 0.5 exponent 20 reflectiveColor 0.7 0.5 0.3");
+    let mut wrong = Vec::new();
+    let mut judge = |text: &str, job: Job, name, value| wrong.extend(unnamed(text, job, name, value));
+    for (name, value) in IN_MIRRORS_AND_TRANSFORMS {
+        judge(&scene, job(), name, value);
+    }
+    judge(&scene, Job { width: 60, height: 36, ..job() }, "aspect-other-axis", 1.0);
+    let level = scene.replace("PerspectiveCamera", "OrthographicCamera").replace("angle 40", "size 6");
+    judge(&level.replace("center 0 1 8", "center 0 1 0.4"), job(), "parallel-rays-from-center", 0.0);
+    judge(&level, job(), "orthographic-as-perspective", 0.0);
+    judge(&level, job(), "hits-behind", 2.0);
+    // A ray that enters a prism through a side leaves it only after total reflection.
+    let prism = scene.replace(
+        "MaterialIndex 2 Sphere { center 1.4 0.6 1 radius 0.9 }",
+        "MaterialIndex 2 Transform { Translate 1.4 0.6 1 YRotate 35 XRotate 20 Scale 1.5 1.5 1.5 Sphere { center 0 0 0 radius \
+         0.6 } }",
+    );
+    for value in [5.0, 6.0, 8.0] {
+        let others = unnamed(&prism, job(), "total-reflection", value);
+        assert!(others.is_none_or(|others| others.contains("[]")), "total reflection {value}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The official program of 2016 counts a hit at the start of a ray, so each hit would follow
+/// itself.
+#[test]
+fn all_hits_along_a_ray_are_few_in_every_dialect() {
+    for dialect in Dialect::ALL {
+        let (scene, world) = world(dialect.rules());
+        let job = job();
+        let variant = SceneVariant::new(&scene, world, job.settings);
+        let raster = variant.raster(job.width, job.height);
+        for place in job.whole().pixel_positions() {
+            let ray = center_ray(&variant.world, &raster, place).unwrap();
+            assert!(variant.world.all_hits(&ray).take(20).count() < 20, "{} at {place:?}", dialect.name());
+        }
+    }
+}
+
+/// Pixels at edges can differ by rounding, and a mistake is not to blame.
+#[test]
+fn few_pixels_at_edges_are_no_mistake() {
+    let (scene, world) = world(Dialect::F04.rules());
+    let job = job();
+    let right = SceneVariant::new(&scene, world, job.settings);
+    let mut aside = right.clone();
+    aside.camera_bugs.sample_position += 0.0035;
+    let ((reference, _), (test, _)) = (picture(&right, &job, 1.0), picture(&aside, &job, 1.0));
+    let transfer = Transfer::Course;
+    let (world, reference, test) = (&right.world, &reference, &test);
+    let diagnosis = diagnose(&DiagnosisInput { scene: &scene, world, job: &job, transfer, reference, test }, &|_| {});
+    assert!(diagnosis.explanations.is_empty() && diagnosis.nearly.is_none(), "{diagnosis:?}");
+}
+
 /// An unrelated picture matches no mistake, and an unrelated reference is reported.
 #[test]
 fn unrelated_pictures_match_no_mistake() {

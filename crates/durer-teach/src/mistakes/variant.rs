@@ -38,6 +38,8 @@ pub struct SceneVariant<'s> {
     pub pixel_order: PixelOrder,
     /// Mistakes of the path tracer.
     pub paths: PathBugs,
+    /// World in which shadow rays are traced, if it is another one.
+    pub shadow_world: Option<Arc<World>>,
 }
 
 /// Returns true if at least one light in the scene file has three attenuation coefficients.
@@ -85,7 +87,8 @@ impl<'s> SceneVariant<'s> {
     /// Creates a variant without mistakes.
     pub fn new(scene: &'s Scene, world: World, settings: RenderSettings) -> Self {
         let (bugs, aim, output, turn, paths) = Default::default();
-        SceneVariant { scene, world, settings, bugs, camera_bugs: aim, output, pixel_order: turn, paths }
+        let shadow_world = None;
+        SceneVariant { scene, world, settings, bugs, camera_bugs: aim, output, pixel_order: turn, paths, shadow_world }
     }
 
     /// Returns the camera ray of a pixel. `place` is a position in pixels, measured from the upper
@@ -96,7 +99,10 @@ impl<'s> SceneVariant<'s> {
                 * self.camera_bugs.factor(raster.width, raster.height)
         };
         let pixel = point(Vec2::new(x as f32, y as f32) + 0.5);
-        self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
+        let sample = CameraSample { point: point(place), pixel, lens };
+        let ray = self.world.camera().ray(self.world.camera_frame(), &sample)?;
+        let t_min = if self.camera_bugs.from_center { ray.t_min.max(0.0) } else { ray.t_min };
+        Some(Ray { t_min, ..ray })
     }
 
     /// Returns the raster of a picture with the given size.
@@ -191,6 +197,18 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
+    /// Returns true if the scene file transforms any object.
+    pub fn has_transforms(&self) -> bool {
+        fn any(group: &Group) -> bool {
+            group.objects.iter().any(|object| match &object.node {
+                ObjectKind::Group(group) => any(group),
+                ObjectKind::Transform(..) => true,
+                _ => false,
+            })
+        }
+        self.scene.root.as_ref().is_some_and(any)
+    }
+
     /// Recomputes the transforms of all objects with `product`.
     pub fn set_transforms(&mut self, product: Product) {
         let rules = matrix_rules(self.world.rules());
@@ -209,6 +227,13 @@ impl<'s> SceneVariant<'s> {
             }
         }
         self.rebuild();
+    }
+
+    /// Traces shadow rays in a copy of the world to which `change` is made.
+    pub fn change_shadow_world(&mut self, change: impl FnOnce(&mut Self)) {
+        let mut other = self.clone();
+        change(&mut other);
+        self.shadow_world = Some(Arc::new(other.world));
     }
 
     fn rebuild(&mut self) {

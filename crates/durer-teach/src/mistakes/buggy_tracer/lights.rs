@@ -2,7 +2,7 @@
 
 use super::{BuggyTracer, mirrored};
 use crate::mistakes::bugs::{Attenuation, Cosine, HalfVector, PointLightDirection};
-use durer_render::world::{HighlightModel, Phong};
+use durer_render::world::HighlightModel;
 use durer_scene::camera::Projection;
 use durer_scene::light::{Illuminate, Light, LightLiSample};
 use durer_scene::math::{Color, Vec3, fp};
@@ -75,7 +75,7 @@ impl BuggyTracer<'_> {
     /// Returns the diffuse term and the highlight that one light causes.
     pub(super) fn direct(
         &self,
-        phong: &Phong,
+        highlight: Option<(Color, f32, HighlightModel)>,
         diffuse: Color,
         n: Vec3,
         view: Vec3,
@@ -116,7 +116,7 @@ impl BuggyTracer<'_> {
         if self.bugs.lights.unfaded == Some(false) {
             color *= unfaded(false);
         }
-        if let Some((specular, exponent, model)) = phong.highlight {
+        if let Some((specular, exponent, model)) = highlight {
             let half = |sum: Vec3| match bugs.half {
                 HalfVector::Unit => sum.normalize_or_zero(),
                 HalfVector::Sum => sum,

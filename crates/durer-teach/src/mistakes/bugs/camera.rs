@@ -12,6 +12,8 @@ pub enum Aspect {
     Smaller,
     /// The smaller side is scaled by the reciprocal of the correct factor.
     Turned,
+    /// The larger side is scaled instead of the smaller one.
+    Exchanged,
 }
 
 /// Mistakes in generating camera rays, in addition to the quirks of the scene's dialect.
@@ -27,6 +29,8 @@ pub struct CameraBugs {
     pub aspect: Aspect,
     /// Number of rays per pixel.
     pub rays: RayCount,
+    /// Only hits in front of the camera's centre count, even with parallel rays.
+    pub from_center: bool,
 }
 
 /// Number of camera rays per pixel in a student's tracer.
@@ -49,6 +53,7 @@ impl Default for CameraBugs {
             border_axes: [false; 2],
             aspect: Aspect::Correct,
             rays: RayCount::Correct,
+            from_center: false,
         }
     }
 }
@@ -63,6 +68,8 @@ impl CameraBugs {
             Aspect::Smaller => Vec2::splat(ratio),
             Aspect::Turned if w > h => Vec2::new(1.0, ratio * ratio),
             Aspect::Turned => Vec2::new(ratio * ratio, 1.0),
+            Aspect::Exchanged if w > h => Vec2::new(1.0 / ratio, ratio),
+            Aspect::Exchanged => Vec2::new(ratio, 1.0 / ratio),
         };
         // A centre at 2 (i + 0.5) / n - 1 moves to 2 i / (n - 1) - 1.
         let border = |n: f32, here: bool| if here && n > 1.0 { n / (n - 1.0) } else { 1.0 };

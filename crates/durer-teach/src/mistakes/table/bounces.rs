@@ -96,8 +96,55 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "reflection",
         "the formula of the mirrored direction has a wrong sign",
         "R = d - 2 (d.N) N",
-        "R = d + 2 (d.N) N",
-        |v, _| v.bugs.bounces.mirror = Mirror::Plus,
+        "R = {d + 2 (d.N) N|normalize(d + 2 (d.N) N)}",
+        |v, unit| (v.bugs.bounces.mirror, v.bugs.bounces.unit) = (Mirror::Plus, unit > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "mirror-multiple",
+        "reflection",
+        "the mirrored direction {is that of the ray|has the factor 4 instead of 2|has the factor 4 instead of 2|has the \
+         factor 3 instead of 2|has the factor 3 instead of 2}",
+        "R = d - 2 (d.N) N",
+        "R = {d|d - 4 (d.N) N|normalize(d - 4 (d.N) N)|d - 3 (d.N) N|normalize(d - 3 (d.N) N)}",
+        |v, how| {
+            let (factor, unit) = [(0, false), (4, false), (4, true), (3, false), (3, true)][(how as usize).min(4)];
+            (v.bugs.bounces.mirror, v.bugs.bounces.unit) = (Mirror::Multiple(factor), unit);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0])),
+    row(
+        "mirror-from-eye",
+        "reflection",
+        "mirrored rays start at the eye, not at the surface",
+        "Ray(p, R)",
+        "Ray(eye, R)",
+        |v, _| v.bugs.bounces.from_eye = true,
+    ),
+    row(
+        "mirror-one-channel",
+        "reflection",
+        "the {red|green|blue} of the mirror's colour is used for all channels",
+        "color += kr * trace(p, R)",
+        "color += kr.{r|g|b} * trace(p, R)",
+        |v, channel| v.phongs(|phong| phong.reflective = Color::splat(phong.reflective[(channel as usize).min(2)])),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "secondary-no-ambient",
+        "reflection",
+        "the ambient light is missing in mirrors and behind glass",
+        "ambient * kd at every hit",
+        "ambient * kd at the first hit only",
+        |v, _| v.bugs.bounces.no_ambient = true,
+    ),
+    row(
+        "secondary-no-highlights",
+        "reflection",
+        "highlights are missing in mirrors and behind glass",
+        "ks * pow(max(0, N.H), s) * I at every hit",
+        "ks * pow(max(0, N.H), s) * I at the first hit only",
+        |v, _| v.bugs.highlights.first_only = true,
     ),
     row(
         "mirror-normal",
@@ -179,11 +226,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "not-bent",
         "refraction",
-        "rays pass straight through glass, as if its index were 1",
+        "rays pass straight through glass, as if its index were 1{|, except in total internal reflection}",
         "T by Snell's law",
         "T = d",
-        |v, _| v.bugs.bounces.glass = Glass::Straight,
-    ),
+        |v, total| v.bugs.bounces.glass = if total == 0.0 { Glass::Straight } else { Glass::StraightUnlessTotal },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "fresnel-constant",
         "fresnel",
@@ -400,9 +448,11 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "refraction",
         "in total internal reflection {a negative number below the root counts as 0|the mirrored light of glass is not \
          increased|the transmitted ray is mirrored|the transmitted ray is not bent|the root of a negative number makes \
-         pixels black}",
+         pixels black|a negative number below the root counts as 0|the sign of the number below the root is ignored|the \
+         sign of the number below the root is ignored|the hit is black}",
         "k = 1 - eta^2 (1 - c^2); if (k < 0) the mirrored ray gets all light",
-        "if (k < 0) {k = 0|only leave out the transmitted ray|T = R|T = d|(nothing): sqrt(k) is NaN}",
+        "if (k < 0) {k = 0|only leave out the transmitted ray|T = R|T = d|(nothing): sqrt(k) is NaN|k = \
+         0, and normalize(T)|k = -k|k = -k, and normalize(T)|return black}",
         |v, how| {
             v.bugs.bounces.total = [
                 TotalReflection::Clamped,
@@ -410,10 +460,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 TotalReflection::Mirrored,
                 TotalReflection::Straight,
                 TotalReflection::NotANumber,
-            ][(how as usize).min(4)];
+                TotalReflection::Clamped,
+                TotalReflection::Absolute,
+                TotalReflection::Absolute,
+                TotalReflection::Black,
+            ][(how as usize).min(8)];
+            v.bugs.bounces.unit = how == 5.0 || how == 7.0;
         },
     )
-    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])),
     row(
         "glass-in-front",
         "epsilon",

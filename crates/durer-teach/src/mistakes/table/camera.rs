@@ -2,8 +2,7 @@
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Aspect, RayCount};
-use durer_scene::camera::Projection;
-use durer_scene::camera::UpRule;
+use durer_scene::camera::{Camera, PerspectiveCamera, Projection, UpRule};
 use durer_scene::dialect::Quirk;
 use durer_scene::math::{Vec2, Vec3, fp};
 
@@ -90,9 +89,10 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rays",
         "the aspect ratio is applied to the wrong axis, or divides instead of multiplying",
         "y *= height / width",
-        "y *= width / height",
-        |v, _| v.camera_bugs.aspect = Aspect::Turned,
-    ),
+        "{y *= width / height|x *= height / width}",
+        |v, x| v.camera_bugs.aspect = if x == 0.0 { Aspect::Turned } else { Aspect::Exchanged },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "angle-inverted",
         "rays",
@@ -123,7 +123,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the field of view is interpreted as radians",
         "D = 1 / tan(angle * pi / 180 / 2)",
         "D = 1 / tan(angle / 2)",
-        |v, _| scale(v, |angle| tan(0.5 * angle.to_degrees()) / tan(0.5 * angle)),
+        |v, _| {
+            scale(v, |angle| (tan(0.5 * angle.to_degrees()) / tan(0.5 * angle)).abs());
+            // The tangent can be negative, and then the camera looks backwards.
+            if v.angle().is_some_and(|angle| tan(0.5 * angle.to_degrees()) < 0.0) {
+                v.world.edit().frame.forward *= -1.0;
+            }
+        },
     ),
     row(
         "angle-ignored",
@@ -188,15 +194,53 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "direction-not-unit",
         "rays",
-        "the camera's direction is not normalised",
+        "the camera's direction is not normalised{|, and its up is computed from it}",
         "d = D normalize(direction) + x u + y v",
-        "d = D direction + x u + y v",
-        |v, _| {
+        "d = D direction + x u + y v{|, v = cross(u, direction)}",
+        |v, up| {
+            let direction = v.world.camera().pose().direction;
             if v.angle().is_some() {
-                v.world.edit().frame.forward = v.world.camera().pose().direction;
+                v.world.edit().frame.forward = direction;
+            }
+            if up > 0.0 {
+                v.world.edit().frame.up *= direction.length();
             }
         },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "parallel-rays-from-center",
+        "rays",
+        "orthographic rays end at the plane of the camera: objects behind its centre are missing",
+        "t_min = -infinity for an orthographic camera",
+        "t_min = 0",
+        |v, _| v.camera_bugs.from_center = true,
     ),
+    row(
+        "orthographic-as-perspective",
+        "rays",
+        "the orthographic camera is a perspective one{, whose picture at distance 1 has the orthographic size|, which takes \
+         the size as an angle in degrees}",
+        "o = center + x size/2 u + y size/2 v, d = w",
+        "o = center, d = normalize({w + x size/2 u + y size/2 v|D w + x u + y v})",
+        |v, angle| {
+            if let Camera::Orthographic(camera) = v.world.camera() {
+                let degrees = match angle == 0.0 {
+                    true => 2.0 * fp::atan2(0.5 * camera.size, 1.0).to_degrees(),
+                    false => camera.size.min(170.0),
+                };
+                let pose = v.world.camera().pose();
+                let perspective = PerspectiveCamera {
+                    center: pose.center,
+                    direction: pose.direction,
+                    up: pose.up,
+                    angle: degrees,
+                };
+                v.world.edit().camera = Camera::Perspective(perspective);
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row("up-default", "rays", "the camera's up is always 0 1 0", "up as written", "up = (0, 1, 0)", |v, _| {
         let frame = *v.world.camera_frame();
         let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);

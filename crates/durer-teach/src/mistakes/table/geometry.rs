@@ -1,20 +1,18 @@
-//! Mistakes in intersections, normals and transforms.
+//! Mistakes in intersections and normals.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{BehindOrigin, HitChoice, Normals, Roots, SphereNormal};
 use crate::mistakes::variant::{CourseShape, course_shape};
 use durer_render::world::Geometry;
 use durer_scene::dialect::{MeshNormals, Quirk};
-use durer_scene::scene::{MatrixOp, MatrixRules};
 use durer_scene::shape::Primitive;
-use glam::DAffine3;
 use std::sync::Arc;
 
 /// Values of mistakes in normals. With 1, mirrors and glass use the wrong normal even where it
 /// points away from the ray.
 const ONE_NORMAL: Values = Values::Only(&[0.0, 1.0]);
 
-/// Common mistakes in intersections, normals and transforms.
+/// Common mistakes in intersections and normals.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-local",
@@ -251,92 +249,6 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.bugs.local_unit = true,
     ),
     row(
-        "matrices-reversed",
-        "transforms",
-        "the matrices of a transform are multiplied in the wrong order",
-        "M = M1 * M2 * M3",
-        "M = M3 * M2 * M1",
-        |v, _| {
-            v.set_transforms(&|ops, rules| {
-                let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
-                MatrixOp::product(&reversed, rules)
-            });
-        },
-    ),
-    row(
-        "rotation-radians",
-        "transforms",
-        "angles of rotations are interpreted as radians",
-        "angle * pi / 180",
-        "angle",
-        |v, _| v.set_transforms(&|ops, rules| turned(ops, rules, f32::to_degrees)),
-    ),
-    row(
-        "rotation-negated",
-        "transforms",
-        "rotations have the wrong sign",
-        "rotation by angle",
-        "rotation by -angle, or the transposed matrix",
-        |v, _| v.set_transforms(&|ops, rules| turned(ops, rules, |angle| -angle)),
-    ),
-    row(
-        "rotation-axis",
-        "transforms",
-        "rotations turn about another axis: {x and y|y and z|x and z} are exchanged",
-        "XRotate about (1, 0, 0), YRotate about (0, 1, 0), ZRotate about (0, 0, 1)",
-        "two of them exchanged",
-        |v, which| {
-            let axes: fn(&MatrixOp) -> MatrixOp = match which as u32 {
-                0 => |op| exchanged(op, 0, 1),
-                1 => |op| exchanged(op, 1, 2),
-                _ => |op| exchanged(op, 0, 2),
-            };
-            v.set_transforms(&|ops: &[MatrixOp], rules| MatrixOp::product(&ops.iter().map(axes).collect::<Vec<_>>(), rules));
-        },
-    )
-    .with(Values::Only(&[0.0, 1.0, 2.0])),
-    row(
-        "translation-negated",
-        "transforms",
-        "translations have the wrong sign",
-        "translation by (x, y, z)",
-        "translation by (-x, -y, -z)",
-        |v, _| {
-            v.set_transforms(&|ops: &[MatrixOp], rules| {
-                let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
-                MatrixOp::product(&ops.iter().map(back).collect::<Vec<_>>(), rules)
-            });
-        },
-    ),
-    row(
-        "scale-inverted",
-        "transforms",
-        "scales are inverted: objects shrink instead of growing",
-        "scale by s",
-        "scale by 1 / s",
-        |v, _| {
-            v.set_transforms(&|ops: &[MatrixOp], rules| {
-                let inverse = |op: &MatrixOp| match *op {
-                    MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
-                    MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
-                    other => other,
-                };
-                MatrixOp::product(&ops.iter().map(inverse).collect::<Vec<_>>(), rules)
-            });
-        },
-    ),
-    row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
-        v.set_transforms(&|_, _| DAffine3::IDENTITY)
-    }),
-    row(
-        "transforms-inverted",
-        "transforms",
-        "objects are transformed by the inverse of M",
-        "ray to object space by M^-1",
-        "ray to object space by M",
-        |v, _| v.set_transforms(&|ops, rules| MatrixOp::product(ops, rules).inverse()),
-    ),
-    row(
         "plane-negated",
         "distance",
         "the offset of planes has the wrong sign",
@@ -467,12 +379,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "hits-behind",
         "distance",
-        "hits behind the ray's origin count: t_min is ignored{| for the camera's rays}",
+        "hits behind the ray's origin count: t_min is ignored{| for the camera's rays|}",
         "t > t_min && t < best",
-        "t < best",
-        |v, rays| v.bugs.behind = Some([BehindOrigin::All, BehindOrigin::Camera][(rays as usize).min(1)]),
+        "{t < best|t < best|abs(t) > t_min && t < best}",
+        |v, rays| {
+            const ALL: [BehindOrigin; 3] = [BehindOrigin::All, BehindOrigin::Camera, BehindOrigin::Beyond];
+            v.bugs.behind = Some(ALL[(rays as usize).min(2)]);
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "thing-missing",
         "distance",
@@ -491,19 +406,6 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
-    row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
-        v.set_transforms(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
-    }),
-    row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
-        v.set_transforms(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
-    }),
-    row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
-        v.set_transforms(&|ops, rules| {
-            without(ops, rules, |op| {
-                matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
-            })
-        });
-    }),
     row(
         "one-material",
         "flat",
@@ -517,46 +419,32 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "triangles-long",
+        "normals",
+        "normals of triangles are not normalised",
+        "N = normalize(cross(b - a, c - a))",
+        "N = cross(b - a, c - a)",
+        |v, _| v.bugs.long_triangles = true,
+    ),
+    row(
+        "normals-translated",
+        "transforms",
+        "normals of transformed objects are transformed like points, including the translation",
+        "N = normalize(M^-T n)",
+        "N = normalize(M {(n, 1))|(M^-T n, 1))}",
+        |v, twice| v.bugs.normals = if twice == 0.0 { Normals::MovedPoint } else { Normals::MovedTwice },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "sphere-unit-direction",
+        "distance",
+        "ray directions in object space are taken as unit vectors: a = 1 {in the quadratic equation|in the division} of spheres",
+        "D = b^2 - a c, t = (-b - sqrt(D)) / a with a = d.d",
+        "{D = b^2 - c|D = b^2 - a c}, t = -b - sqrt(D)",
+        |v, division| {
+            v.bugs.hit_choice = HitChoice::Roots(if division == 0.0 { Roots::Unit } else { Roots::UnitDivisor });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
 ];
-
-/// Exchanges two axes of a rotation.
-fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
-    let (axis, angle) = match *op {
-        MatrixOp::XRotate(angle) => (0, angle),
-        MatrixOp::YRotate(angle) => (1, angle),
-        MatrixOp::ZRotate(angle) => (2, angle),
-        MatrixOp::Rotate(mut axis, angle) => {
-            (axis[a], axis[b]) = (axis[b], axis[a]);
-            return MatrixOp::Rotate(axis, angle);
-        }
-        other => return other,
-    };
-    let turned = if axis == a {
-        b
-    } else if axis == b {
-        a
-    } else {
-        axis
-    };
-    [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
-}
-
-/// Returns the product of a transform's matrices without the matrices that `left_out` selects.
-fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
-    let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
-    MatrixOp::product(&kept, rules)
-}
-
-/// Returns the product of a transform's matrices after `change` has been applied to the rotation
-/// angles.
-fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
-    let change = |op: &MatrixOp| match *op {
-        MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
-        MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
-        MatrixOp::ZRotate(angle) => MatrixOp::ZRotate(change(angle)),
-        MatrixOp::Rotate(axis, angle) => MatrixOp::Rotate(axis, change(angle)),
-        other => other,
-    };
-    let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
-    MatrixOp::product(&changed, rules)
-}

@@ -160,6 +160,29 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.bugs.highlights.eye_negated = true,
     ),
     row(
+        "highlight-from-eye",
+        "specular",
+        "in mirrors and behind glass, the highlights use the direction to the eye instead of the ray's origin",
+        "V = -d",
+        "V = normalize(eye - p)",
+        |v, _| v.bugs.highlights.from_eye = true,
+    ),
+    row(
+        "colors-exchanged",
+        "specular",
+        "the diffuse and the specular colour are exchanged",
+        "kd * max(0, N.L) + ks * pow(max(0, N.H), s)",
+        "ks * max(0, N.L) + kd * pow(max(0, N.H), s)",
+        |v, _| {
+            v.highlights_everywhere();
+            v.phongs(|phong| {
+                if let Some((specular, ..)) = &mut phong.highlight {
+                    std::mem::swap(specular, &mut phong.diffuse);
+                }
+            });
+        },
+    ),
+    row(
         "highlight-two-sided",
         "specular",
         "the highlights ignore the sign of their base: there is a highlight on the opposite side too",

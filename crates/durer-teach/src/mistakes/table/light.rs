@@ -2,7 +2,7 @@
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Ambient, Attenuation, Cosine, LightSum, PointLightDirection};
-use durer_scene::light::Light;
+use durer_scene::light::{Illuminate, Light};
 use durer_scene::math::{Color, Vec3};
 
 /// Common mistakes in local light.
@@ -138,6 +138,28 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Lights),
+    row(
+        "light-colors-equal",
+        "diffuse",
+        "all lights have the colour of the {first|last} one",
+        "I = lights[i].color",
+        "I = lights[{0|n - 1}].color",
+        |v, last| {
+            let lights = v.world.lights();
+            let chosen = if last == 0.0 { lights.first() } else { lights.last() };
+            let Some(color) = chosen.map(Illuminate::color) else { return };
+            recolor(v.world.edit().lights.iter_mut(), |_| color);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "unlit",
+        "diffuse",
+        "surfaces have their diffuse colour, without any light",
+        "color = ambient * kd; for each light color += ...",
+        "color = kd",
+        |v, _| v.bugs.unlit = true,
+    ),
     row(
         "last-light-only",
         "diffuse",

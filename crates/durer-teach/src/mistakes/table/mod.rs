@@ -10,6 +10,7 @@ mod output;
 mod patterns;
 mod shadows;
 mod textures;
+mod transforms;
 
 use super::SceneVariant;
 use super::variant::three_factors;
@@ -63,12 +64,13 @@ impl Values {
 }
 
 /// The mistakes of Whitted's method, grouped by family.
-pub const MISTAKES: [&[Mistake]; 9] = [
+pub const MISTAKES: [&[Mistake]; 10] = [
     light::MISTAKES,
     highlights::MISTAKES,
     shadows::MISTAKES,
     bounces::MISTAKES,
     geometry::MISTAKES,
+    transforms::MISTAKES,
     textures::MISTAKES,
     patterns::MISTAKES,
     camera::MISTAKES,

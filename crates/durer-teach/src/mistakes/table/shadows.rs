@@ -2,7 +2,9 @@
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{ShadowDirection, ShadowRayEnd};
+use crate::mistakes::variant::{CourseShape, course_shape};
 use durer_scene::dialect::Quirk;
+use glam::DAffine3;
 
 /// Common mistakes in shadow rays.
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -154,6 +156,33 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "Ray(eye, L)",
         |v, _| v.bugs.shadows.from_eye = true,
     ),
+    row(
+        "shadows-untransformed",
+        "transforms",
+        "shadow rays ignore transforms",
+        "shadow rays to object space by M^-1",
+        "shadow rays unchanged",
+        |v, _| v.change_shadow_world(|v| v.set_transforms(&|_, _| DAffine3::IDENTITY)),
+    ),
+    row(
+        "shadows-of-spheres",
+        "shadows",
+        "only {spheres|planes|triangles} cast shadows",
+        "occluded by any object",
+        "occluded by {spheres|planes|triangles} only",
+        |v, kind| {
+            v.change_shadow_world(|v| {
+                v.world.edit().objects.retain(|object| match course_shape(&object.geometry) {
+                    Some(CourseShape::Sphere) => kind == 0.0,
+                    Some(CourseShape::Plane) => kind == 1.0,
+                    Some(CourseShape::Triangle | CourseShape::Mesh) => kind == 2.0,
+                    None => false,
+                });
+                v.objects(|_| {});
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "shadows-diffuse",
         "shadows",
