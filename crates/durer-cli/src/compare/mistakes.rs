@@ -49,6 +49,7 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
             .explanations
             .iter()
             .skip(1)
+            .filter(|explanation| words(explanation) != words(first))
             .take(4)
             .map(|explanation| format!("  or, equivalent in this scene: {}", words(explanation))),
     );

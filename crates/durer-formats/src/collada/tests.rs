@@ -304,9 +304,11 @@ fn cameras_show_what_the_file_states() {
     let camera = |lens: &str| {
         let library = format!(
             "{SQUARE}<library_cameras><camera id='c'><optics><technique_common>{lens}</technique_common></optics></camera>\
-             </library_cameras>"
+             </library_cameras><library_lights><light id='l'><technique_common><directional><color>1 1 1</color>\
+             </directional></technique_common></light></library_lights>"
         );
-        let nodes = "<node><instance_geometry url='#square'/></node>\
+        // The camera of a model without lights is moved until all is visible.
+        let nodes = "<node><instance_geometry url='#square'/><instance_light url='#l'/></node>\
                      <node><translate>0 0 9</translate><instance_camera url='#c'/></node>";
         sound(&document(&library, nodes)).camera.unwrap()
     };

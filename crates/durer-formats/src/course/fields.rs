@@ -165,7 +165,8 @@ impl Reader<'_, '_> {
                 let Some(next) = self.ahead(i + 1) else { return false };
                 let word = self.text(next.span);
                 let field = fields.iter().any(|f| f.keywords.iter().any(|(w, _)| *w == word));
-                return field || !self.at_open() && next.kind == TokenKind::Close;
+                let is_block = self.at_open() || self.at_named_block();
+                return field || !is_block && next.kind == TokenKind::Close;
             }
         }
         false

@@ -217,8 +217,8 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
-    /// Warns about a node with a mesh or a light that no scene of the file contains. Nodes that an extension
-    /// may refer to are not reported.
+    /// Warns about a node with a mesh or a light that no scene of the file contains. Nodes that an
+    /// extension may refer to are not reported.
     pub(super) fn report_nodes_without_scene(&self, root: &JsonRef, nodes: &[NodeData]) {
         let scenes = root.value.get("scenes").and_then(|scenes| scenes.as_array());
         let Some(scenes) = scenes.filter(|_| root.value.pointer("/extensionsUsed").is_none_or(has_no_levels)) else {

@@ -128,7 +128,8 @@ impl Reader<'_, '_> {
         let temperature = self.input(prim, "colorTemperature").unwrap_or(6500.0).clamp(1000.0, 10_000.0);
         let spectrum = has_temperature.then(|| format!("{temperature}K"));
         let shines = radiance.min_element() >= 0.0 && radiance.max_element() > 0.0;
-        if !shines {
+        // A black dome keeps a scene dark.
+        if !shines && kind != "DomeLight" {
             let cause = if intensity <= 0.0 { "`inputs:intensity` is not above 0" } else { "`inputs:color` is black" };
             let message = format!("the light `{}` emits nothing: {cause}", prim.name());
             let diagnostic = Diagnostic::warning(message).code("black-light").at(prim.span());

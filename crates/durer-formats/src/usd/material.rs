@@ -179,11 +179,6 @@ impl Reader<'_, '_> {
         let Some((opacity, picture)) = self.factor(shader, "opacity", s) else { return };
         s.material.opacity_cutoff = threshold;
         if picture.is_none() && threshold.is_none() && !is_presence && opacity < 1.0 {
-            if opacity <= 0.0 {
-                let message = "`inputs:opacity` is 0: objects with this material are clear and hardly visible";
-                let warning = Diagnostic::warning(message).code("not-there").at(shader.span());
-                self.stage.files.report.push(warning.help("write an opacity above 0, such as 1"));
-            }
             // Diffuse light fades, but reflections stay.
             s.material.transmission_weight = 1.0 - opacity.max(0.0);
             s.material.walls = Walls::Thin;

@@ -100,7 +100,7 @@ fn malformed_epw_files_are_reported_with_line_and_column() {
         (with("300,0,0,0", "300,0,5000,0"), "9:44: a direct normal irradiance of 5000 W/m^2 is more than"),
         (with(",95000,0,0,300,0,0,0,0,0", ""), "9:1: a row must have at least 16 fields, but this one has 9"),
         (good() + &row([1999, 1, 1, 1], "5", "0", "0"), "10:10: `DATA PERIODS` states 1 rows per hour"),
-        (good() + &row([1998, 1, 1, 1], "5", "0", "0").replace("1,1,1,", "1,1,1,"), "10:10: `DATA PERIODS` states"),
+        (good() + &row([1998, 1, 1, 1], "5", "0", "0"), "10:10: `DATA PERIODS` states"),
     ] {
         let found = parse(&text).unwrap_err();
         assert!(found.starts_with(error), "{error:?}, found {found:?}");

@@ -39,7 +39,13 @@ class Background(Thing):
 
     time_zone: number, from -14 to 14. Offset of the local clock from UTC in hours, including daylight saving time; default 0.
 
-    sky_model: `preetham`, `hosek`. Model of the clear sky: Preetham's, or that of Hosek and Wilkie, which is closer to measured skies.
+    sky_model: `preetham`, `hosek`, `perez`. Model of the sky: Preetham's clear sky, that of Hosek and Wilkie, which is closer to measured skies, or the all-weather sky of Perez for a measured irradiance.
+
+    direct_normal: number, from 0 to 1500. Irradiance from the sun on a surface that faces it, in W/m^2, for `skyModel perez`.
+
+    diffuse_horizontal: number, from 0 to 1500. Irradiance from the sky on a horizontal surface, in W/m^2, for `skyModel perez`.
+
+    dew_point: number, from -90 to 60. Dew point in degrees Celsius, for `skyModel perez`; default 11.
 
     turbidity: number, more than 0. Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
 
@@ -71,7 +77,10 @@ class Background(Thing):
         date: Optional[npt.ArrayLike] = None,
         time: Optional[npt.ArrayLike] = None,
         time_zone: Optional[float] = None,
-        sky_model: Optional[Literal["preetham", "hosek"]] = None,
+        sky_model: Optional[Literal["preetham", "hosek", "perez"]] = None,
+        direct_normal: Optional[float] = None,
+        diffuse_horizontal: Optional[float] = None,
+        dew_point: Optional[float] = None,
         turbidity: Optional[float] = None,
         cie_sky: Optional[Union[int, Material]] = None,
         zenith_luminance: Optional[float] = None,
@@ -94,6 +103,9 @@ class Background(Thing):
             ("time", time),
             ("timeZone", time_zone),
             ("skyModel", sky_model),
+            ("directNormal", direct_normal),
+            ("diffuseHorizontal", diffuse_horizontal),
+            ("dewPoint", dew_point),
             ("turbidity", turbidity),
             ("cieSky", cie_sky),
             ("zenithLuminance", zenith_luminance),

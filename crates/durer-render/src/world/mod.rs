@@ -397,8 +397,8 @@ impl World {
     /// Iterates over all hits in the ray's interval, in order of distance. If several hits have the
     /// same `t`, only the first one is included.
     ///
-    /// The official programs of some years also return hits at the start of the interval. Such a hit
-    /// is not included twice, since the iteration would never end otherwise.
+    /// The official programs of some years also return hits at the start of the interval. Such a
+    /// hit is not included twice, since the iteration would never end otherwise.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let mut rest = ray.into();
         let mut last: Option<f32> = None;

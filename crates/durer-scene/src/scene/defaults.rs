@@ -117,8 +117,6 @@ impl ModelAxes {
 const ANGLE: f32 = 30.0;
 /// Number of angles of an orbiting camera from which the model must be visible.
 const ORBIT_STEPS: u32 = 48;
-/// Background of a model with lights of its own, in the unit of radiance.
-const SURROUNDINGS: f32 = 0.15;
 /// Fraction of the width or height of the picture that a model fills.
 const FILL: f64 = 0.86;
 
@@ -155,13 +153,11 @@ impl SceneDefaults {
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed || fitted);
         }
+        // The background of a scene that has its own light is black, unless the file sets it.
         let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         let unset = scene.background == Background::default() && !scene.background_span.has_position();
         if (emits || self.own_light) && unset {
-            // The lights of a model say little about its surroundings, which metals and glass show.
-            // A complete scene has only its own light.
-            let is_model = !dark && !self.own_light;
-            scene.background.color = if is_model { Vec3::splat(SURROUNDINGS) } else { Vec3::ZERO };
+            scene.background.color = Vec3::ZERO;
         }
     }
 

@@ -7,7 +7,6 @@ use super::lights::{description, no_contribution, none_contributes};
 use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot, spread_direction};
 use durer_diag::Diagnostic;
-use durer_scene::camera::Projection as _;
 use durer_scene::light::{Illuminate as _, Light, PhotometricLight};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
@@ -72,11 +71,10 @@ fn wall_before(scene_probe: &SceneProbe, from: Vec3, to: Vec3) -> Option<u32> {
     let world = scene_probe.world();
     let ray = durer_scene::math::Ray { t_max: 0.9, ..durer_scene::math::Ray::new(from, to - from) };
     let hit = world.closest(&ray, &mut ())?;
-    let shown = scene_probe.hits().filter(|(_, seen)| seen.object == hit.object).count();
-    let eye = world.camera().pose().center;
-    let way = durer_scene::math::Ray { t_max: 1.0, ..durer_scene::math::Ray::new(from, eye - from) };
-    let separates = world.closest(&way, &mut ()).is_some_and(|other| other.object == hit.object);
-    (separates && shown * 10 > scene_probe.probes.len() && !scene_probe.is_glass(hit.object)).then_some(hit.object)
+    let size = |bounds: durer_scene::math::Aabb| bounds.size().max_element();
+    let is_large =
+        world.objects()[hit.object as usize].bounds().is_none_or(|own| size(own) > 0.5 * size(world.bounds()));
+    (is_large && !scene_probe.is_glass(hit.object)).then_some(hit.object)
 }
 
 /// Returns true if a photometric light with a given direction would reach the objects, which are in

@@ -165,6 +165,8 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
         // Multiples of 5 up to 100 may also be percentages.
         let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
+        // Light without attenuation can also be this strong on purpose.
+        let is_light = is_light && color.max_element() < 128.0;
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let far = color.max_element() > 2.0;
         let message = format!("the colour {} is {}above 1", vector(color), if far { "far " } else { "" });

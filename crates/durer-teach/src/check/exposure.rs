@@ -157,7 +157,9 @@ pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
     if scene_probe.is_physical() || scene_probe.world().environment().is_some() {
         return white(scene_probe);
     }
-    let lit: Vec<Color> = scene_probe.hits().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
+    let exposed = scene_probe.input.exposure;
+    let lit: Vec<Color> =
+        scene_probe.hits().map(|(probe, _)| exposed * probe.color).filter(|color| color.is_finite()).collect();
     let far = lit.iter().filter(|color| color.max_element() > FAR_ABOVE_WHITE).count();
     let cut = lit.iter().filter(|color| color.max_element() > MAX_UNCLIPPED).count();
     let white = lit.iter().filter(|color| color.min_element() > MAX_UNCLIPPED).count();

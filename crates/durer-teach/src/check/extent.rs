@@ -167,8 +167,8 @@ fn part_of_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding
     Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
 }
 
-/// Returns the field of view across the larger side of the picture, in degrees, of a camera that has
-/// a single eye and shows straight lines as straight lines.
+/// Returns the field of view across the larger side of the picture, in degrees, of a camera with a
+/// single eye that shows straight lines as straight lines.
 fn field_of_view(camera: &Camera) -> Option<f32> {
     match camera {
         Camera::Perspective(camera) => Some(camera.angle),
@@ -182,8 +182,8 @@ fn field_of_view(camera: &Camera) -> Option<f32> {
 fn radians_help(scene_probe: &SceneProbe, angle: f32) -> String {
     let degrees = number(angle.to_degrees());
     match scene_probe.model_format().map(|format| format.name) {
-        Some("glTF") => "`yfov` is in radians, and 0.5 to 1 is usual".into(),
-        Some("OpenUSD") => "use a smaller `focalLength`, or a larger aperture".into(),
+        Some("glTF") => "the yfov is in radians, and 0.5 to 1 is usual".into(),
+        Some("OpenUSD") => "use a smaller focal length, or a larger aperture".into(),
         _ => format!(
             "angles are in degrees, and 30 to 60 degrees are usual; if this value is in radians, it is {degrees} degrees"
         ),

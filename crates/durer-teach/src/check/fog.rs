@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
-use durer_diag::Diagnostic;
+use durer_diag::{Diagnostic, Span};
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
@@ -46,8 +46,11 @@ pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     };
     let even = fog.region.is_none();
-    if !scene_probe.is_physical() || written.value.color != Color::ZERO || !even {
+    if !scene_probe.is_physical() || written.value.color != Color::ZERO {
         return Vec::new();
+    }
+    if !even {
+        return dark_beams(scene_probe, written.span).into_iter().collect();
     }
     let mut ways: Vec<f32> =
         scene_probe.hits().map(|(probe, hit)| hit.t * probe.ray.dir.length()).filter(|way| way.is_finite()).collect();
@@ -62,13 +65,7 @@ pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     shown.sort_by(f32::total_cmp);
     let is_dim = shown.get(shown.len() / 2).is_some_and(|brightness| *brightness < DIM);
     if left > MAX_LEFT || !is_dim {
-        let is_lit = scene_probe.world().lights().iter().any(|light| light.cone().is_some());
-        let diagnostic = Diagnostic::note("this fog only absorbs light: its `color` is 0 0 0")
-            .effect("the fog itself is black, and beams of light in it are invisible")
-            .help("for white fog, write `color 1 1 1`, the fraction of light that the fog scatters");
-        let value = scene_probe.field_span(written.span, &["color"]);
-        let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, "1 1 1"), written.span, &["color"]);
-        return if is_lit { vec![Finding::from(diagnostic)] } else { Vec::new() };
+        return dark_beams(scene_probe, written.span).into_iter().collect();
     }
     let diagnostic = Diagnostic::warning("this fog scatters no light: its `color` is 0 0 0, so it only absorbs light")
         .effect(format!(
@@ -80,6 +77,16 @@ pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     let value = scene_probe.field_span(written.span, &["color"]);
     let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, "1 1 1"), written.span, &["color"]);
     vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+}
+
+/// Returns a note about fog that only absorbs light if a light has a beam that it could show.
+fn dark_beams(scene_probe: &SceneProbe, span: Span) -> Option<Finding> {
+    scene_probe.world().lights().iter().find(|light| light.cone().is_some())?;
+    let diagnostic = Diagnostic::note("this fog only absorbs light: its `color` is 0 0 0")
+        .effect("the fog itself is black, and beams of light in it are invisible")
+        .help("for white fog, write `color 1 1 1`, the fraction of light that the fog scatters");
+    let value = scene_probe.field_span(span, &["color"]);
+    Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "1 1 1"), span, &["color"])))
 }
 
 /// Returns the bounds of a box for fog around all objects, as the fields of the box.

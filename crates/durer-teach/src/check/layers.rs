@@ -45,7 +45,11 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let say = |(number, material, m): Layered| {
         // The reader reports a black light of Radiance.
-        let is_light = ["light", "glow", "illum", "spotlight"].contains(&scene_probe.text(material.span).as_str());
+        let is_light = {
+            let text = scene_probe.text(material.span);
+            let word = text.split_whitespace().next().unwrap_or_default();
+            ["light", "glow", "illum", "spotlight"].contains(&word)
+        };
         if scene_probe.material_rays()[number] == 0 || is_light {
             return None;
         }
@@ -55,6 +59,15 @@ pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
         let textured = m.base_color_texture.is_some() && is_factor || m.base_spectrum.is_some();
         let reflection = m.specular_weight * m.specular_color.max_element();
         let skin = reflection > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
+        if m.base_color_texture.is_some() && !is_factor && m.base_metalness < 0.1 && m.transmission_weight < 0.5 {
+            let message = format!("the texture of material {number} is multiplied by `baseColor` 0 0 0: it is black");
+            let diagnostic = Diagnostic::warning(message)
+                .effect("objects with this material are black, except for highlights")
+                .help("write `baseColor 1 1 1` to show the texture unchanged");
+            let value = scene_probe.field_span(material.span, &["baseColor"]);
+            let diagnostic = diagnostic.fix_at(value, "1 1 1");
+            return Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["baseColor"])));
+        }
         if let Some((words, message, help)) = absorbing_layer(m) {
             let diagnostic = Diagnostic::warning(format!("{message}, so material {number} is black"))
                 .effect("objects with this material are black under any light, except for highlights")

@@ -108,6 +108,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("NODE_NO_SCENE", &["unused-material"]),
     ("repeated", &["light-behind", "light-blocked", "light-faint", "too-dark", "unused-material"]),
     ("black-light", &["same-color", "too-dark", "one-color", "no-emitter", "mostly-black"]),
+    ("missing-field", &["light-blocked", "camera-away", "all-missed"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
     ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),

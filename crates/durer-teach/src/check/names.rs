@@ -74,7 +74,7 @@ pub(super) fn name_materials(scene_probe: &SceneProbe, mut finding: Finding) -> 
             let name = number.and_then(|number| material_name(scene_probe, number));
             match name {
                 Some(name) => text.replace_range(at..at + digits, &name),
-                // Materials of models have no numbers.
+                // In a model, a number says nothing.
                 None if digits > 0 && scene_probe.model_format().is_some() => {
                     text.replace_range(at - "material ".len()..at + digits, "this material");
                 }

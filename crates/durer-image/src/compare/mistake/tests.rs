@@ -169,7 +169,7 @@ fn shifted_samples() {
 /// A few pixels at edges that differ by rounding, and specks of noise, are no antialiasing.
 #[test]
 fn specks_are_not_taken_for_samples() {
-    let stripes = |x: usize, _: usize| Vec3::splat(if x / 7 % 2 == 0 { 0.8 } else { 0.3 });
+    let stripes = |x: usize, _: usize| Vec3::splat(if (x / 7).is_multiple_of(2) { 0.8 } else { 0.3 });
     let specks = move |x: usize, y: usize| match (x * 7919 + y * 104_729) % 101 {
         0 => Vec3::ZERO,
         1 => Vec3::ONE,
@@ -177,7 +177,8 @@ fn specks_are_not_taken_for_samples() {
     };
     let found = findings(&stripes, &specks);
     assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
-    let rounded = move |x: usize, y: usize| if x % 7 == 0 && y % 40 == 3 { stripes(x + 7, y) } else { stripes(x, y) };
+    let rounded =
+        move |x: usize, y: usize| if x.is_multiple_of(7) && y % 40 == 3 { stripes(x + 7, y) } else { stripes(x, y) };
     let found = findings(&stripes, &rounded);
     assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
 }

@@ -200,8 +200,9 @@ mod tests {
         // then the illuminance of the sun in lux and the luminances of Tregenza's patches 0, 15,
         // 69, 109, 139 and 144 in cd/m^2, from `gendaymtx` of Radiance 6.0a (`-m 1 -s -c 1 1 1`,
         // and `-D` for the sun), times 179 lm/W.
+        type Measured = ([f32; 3], u32, [f32; 2], f32, [f32; 6]);
         #[rustfmt::skip]
-        let measured: [([f32; 3], u32, [f32; 2], f32, [f32; 6]); 10] = [
+        let measured: [Measured; 10] = [
             ([0.484350, 0.277636, 0.829653], 15, [0.0, 60.0], 0.0, [1550.7, 1917.5, 2391.5, 2229.1, 2408.5, 2418.8]),
             ([0.021401, 0.370057, 0.928763], 15, [30.0, 150.0], 2641.0, [4749.0, 23239.9, 8517.3, 2710.0, 2710.8, 2858.1]),
             ([0.873331, 0.327033, 0.361030], 80, [100.0, 120.0], 8384.0, [4272.3, 5460.9, 12444.7, 2643.2, 2599.0, 2322.9]),

@@ -125,7 +125,7 @@ mod tests {
         let equal = mean_difference(&reference, &noisy(77_777, |_| 1.0), 60, 60);
         assert_eq!(equal, None);
         let darker = mean_difference(&reference, &noisy(77_777, |_| 0.9), 60, 60).unwrap();
-        assert!(darker.whole && (darker.ratio - 0.9).abs() < 0.02, "{darker:?}");
+        assert!(darker.whole && (darker.ratio - 0.9).abs() < 0.04, "{darker:?}");
         let partly = mean_difference(&reference, &noisy(77_777, |x| if x < 10 { 0.4 } else { 1.0 }), 60, 60).unwrap();
         assert!(partly.ratio < 1.0, "{partly:?}");
     }

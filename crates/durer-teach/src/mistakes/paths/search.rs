@@ -48,6 +48,9 @@ struct Trial<'c> {
     matched: f64,
     /// See [`BlockMeans::misfit`].
     misfit: f64,
+    /// The misfit if the picture is as noisy as the candidate. It decides only if a candidate fits,
+    /// since it would favour noisy candidates.
+    least_misfit: f64,
 }
 
 impl Trial<'_> {
@@ -176,13 +179,22 @@ fn trial<'c>(candidate: &'c Candidate, test: &BlockMeans, own: &BlockMeans) -> T
     });
     let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
     let misfit = candidate.rendered.misfit(test, &noise);
-    Trial { candidate, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)), misfit }
+    let most =
+        noise.iter().zip(&candidate.rendered.variance).map(|(noise, own)| noise.max(2.0 * own)).collect::<Vec<_>>();
+    let least_misfit = candidate.rendered.misfit(test, &most);
+    Trial {
+        candidate,
+        explained,
+        matched: f64::from(agree as u32) / f64::from((either as u32).max(1)),
+        misfit,
+        least_misfit,
+    }
 }
 
 /// Returns true if the remaining misfit can be attributed to noise and small differences between
 /// programs. `before` is the misfit without mistakes.
 fn fits(trial: &Trial, before: f64) -> bool {
-    trial.misfit - 1.0 < MAX_MISFIT + MAX_MISFIT_SHARE * (before - 1.0).max(0.0)
+    trial.least_misfit - 1.0 < MAX_MISFIT + MAX_MISFIT_SHARE * (before - 1.0).max(0.0)
 }
 
 /// Returns the mistakes that explain differences too small to be visible in single blocks. There
@@ -199,15 +211,19 @@ fn decided_by_misfit(trials: &mut [Trial<'_>], before: f64, test: &BlockMeans) -
         .iter()
         .filter(|trial| (trial.misfit - best.misfit) * blocks < MIN_LEAD.max(MIN_LEAD_SHARE * gain))
         .collect();
-    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(best, rival, test)) {
+    if rivals.len() > 4 || !rivals.iter().all(|rival| alike(best, rival, test)) {
         return Vec::new();
     }
     let explained = |trial: &Trial| ((before - trial.misfit) / (before - 1.0).max(1e-9)).clamp(0.0, 1.0);
     rivals.iter().map(|rival| Explanation { explained: explained(rival), ..rival.explanation() }).collect()
 }
 
-/// Returns true if the pictures of two candidates differ in at most a twentieth of the blocks.
+/// Returns true if the pictures of two candidates differ in at most a twentieth of the blocks, or
+/// if they are values of one mistake.
 fn alike(best: &Trial, other: &Trial, test: &BlockMeans) -> bool {
+    if best.candidate.mistake.0.name == other.candidate.mistake.0.name {
+        return true;
+    }
     let noise = noise(&best.candidate.rendered, test);
     let beyond = best.candidate.rendered.excess_difference(&other.candidate.rendered, &noise);
     let is_equal = best.candidate.rendered.misfit(&other.candidate.rendered, &noise) < 0.05;
@@ -225,7 +241,7 @@ fn decided(trials: &mut [Trial<'_>], before: f64, test: &BlockMeans) -> Vec<Expl
     let rivals: Vec<&Trial> =
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL_RATIO * rest(best) + 0.005).collect();
     // If rivals produce different pictures, naming one of them would be a guess.
-    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(best, rival, test)) {
+    if rivals.len() > 4 || !rivals.iter().all(|rival| alike(best, rival, test)) {
         return Vec::new();
     }
     rivals.iter().map(|rival| rival.explanation()).collect()

@@ -162,8 +162,14 @@ const ELSEWHERE: [(&str, f32, Option<&str>); 22] = [
 
 /// Mistakes that the noise of these small pictures can hide. They are named correctly or not at
 /// all.
-const HIDDEN_BY_NOISE: [(&str, f32); 4] =
-    [("path-uniform", 0.0), ("path-two-sided", 0.0), ("path-roulette", 1.0), ("path-refraction", 1.0)];
+const HIDDEN_BY_NOISE: [(&str, f32); 6] = [
+    ("path-uniform", 0.0),
+    ("path-two-sided", 0.0),
+    ("path-roulette", 1.0),
+    ("path-refraction", 1.0),
+    ("path-sky", 4.0),
+    ("path-fresnel", 2.0),
+];
 
 #[test]
 fn each_mistake_is_named() {
