@@ -419,3 +419,42 @@ fn names_of_materials_are_used() {
     let rough = folder.run("check c.txt").out;
     assert!(rough.contains("did you mean `specularRoughness`?"), "{rough}");
 }
+
+/// A room in haze with a spotlight, for the cases below.
+const STAGE: &str = "PerspectiveCamera { center 0 1.7 8 direction 0 0 -1 up 0 1 0 angle 45 }
+Background { color 0 0 0 }
+Fog { extinction 0.05 color 0.9 0.9 0.9 min -4 0 -4 max 4 5 5 }
+Lights { SpotLight { position -2.5 4.5 1 direction 2.5 -4.5 -1 color 60 55 45 angle 18 innerAngle 12 } }
+Materials {
+  PrincipledMaterial boards { baseColor 0.35 0.25 0.18 specularRoughness 0.5 }
+  PrincipledMaterial glass { transmissionWeight 1 specularRoughness 0 }
+  PrincipledMaterial actor { baseColor 0.7 0.65 0.6 }
+}
+Group {
+  MaterialIndex boards Box { min -4 -0.2 -4 max 4 0 4 }
+  MaterialIndex actor Box { min -0.3 0 -0.3 max 0.3 1.4 0.3 } Sphere { center 0 1.65 0 radius 0.25 }
+  MaterialIndex glass Sphere { center 2 0.5 0 radius 0.5 }
+}
+";
+
+#[test]
+fn causes_in_a_stage_are_named() {
+    let folder = TestFolder::new();
+    let lens = "ThinLensCamera { center 0 1.7 8 direction 0 0 -1 up 0 1 0 angle 0.785 aperture 0.01 focusDistance 8 }";
+    let camera = "PerspectiveCamera { center 0 1.7 8 direction 0 0 -1 up 0 1 0 angle 45 }";
+    for (from, to, expected) in [
+        ("specularRoughness 0 }", "specularRoughness 0", "[unclosed-block]"),
+        ("center 2 0.5 0 radius 0.5", "center 0 1.7 8 radius 0.5", "[camera-inside]"),
+        (camera, lens, "[too-narrow]"),
+        ("color 0.9 0.9 0.9", "color 0 0 0", "[black-fog]"),
+    ] {
+        assert_eq!(STAGE.matches(from).count(), 1, "{from}");
+        folder.write("stage.txt", STAGE.replace(from, to));
+        let output = folder.run("check stage.txt");
+        let all = output.out + &output.err;
+        assert!(all.contains(expected), "{from} => {to}\n{all}");
+    }
+    folder.write("stage.txt", STAGE);
+    let output = folder.expect_exit(0, "check stage.txt").out;
+    assert!(output.contains("no findings"), "{output}");
+}

@@ -63,13 +63,16 @@ fn unobstructed_sensor_sees_the_sun_and_the_sky() {
             let hours = &found.sensors[0].hours;
             assert_eq!(hours.len(), 24);
             for (row, hour) in weather.rows.iter().zip(hours) {
-                let expected = match row.daylight(&weather.place) {
-                    Daylight::Sky(sky) => sky.sky_illuminance() + sky.sun_illuminance() * sky.sun().y,
-                    _ => 0.0,
+                let (expected, sun) = match row.daylight(&weather.place) {
+                    Daylight::Sky(sky) => {
+                        (sky.sky_illuminance() + sky.sun_illuminance() * sky.sun().y, sky.sun_illuminance())
+                    }
+                    _ => (0.0, 0.0),
                 };
-                // Each patch has one luminance, which matters most where the sun is low.
+                // Each patch has one luminance, which matters most where the sun is low. Four rays
+                // to the sun find its altitude to 0.06 degrees.
                 let share = if patches == 145 { 0.01 } else { 0.004 };
-                let tolerance = share * expected + 3.0 * hour.error;
+                let tolerance = share * expected + 0.001 * sun + 3.0 * hour.error;
                 assert!((hour.illuminance - expected).abs() <= tolerance, "{}: {hour:?}, {expected}", row.hours);
             }
         }
@@ -126,9 +129,10 @@ fn pane_dims_the_sun_once() {
     let open = run(scene(glass, NOTHING), &weather, 145, &[upward(Vec3::ZERO)], &options);
     let behind = run(scene(glass, pane), &weather, 145, &[upward(Vec3::ZERO)], &options);
     let noon = |found: &Annual| found.sensors[0].hours[12].illuminance;
-    // A pane of index 1.5 transmits 92 % near the normal, and less at the 37 degrees of the sun.
+    // A pane of index 1.5 transmits 91.7 % at the 37 degrees of the sun, and mirrors the lit ground: a
+    // fifth of the sunlight times the mean reflectance of the pane, 0.15.
     let share = noon(&behind) / noon(&open);
-    assert!((0.89..0.93).contains(&share), "{share}");
+    assert!((0.937..0.957).contains(&share), "{share}");
 }
 
 #[test]
