@@ -129,8 +129,8 @@ fn pane_dims_the_sun_once() {
     let open = run(scene(glass, NOTHING), &weather, 145, &[upward(Vec3::ZERO)], &options);
     let behind = run(scene(glass, pane), &weather, 145, &[upward(Vec3::ZERO)], &options);
     let noon = |found: &Annual| found.sensors[0].hours[12].illuminance;
-    // A pane of index 1.5 transmits 91.7 % at the 37 degrees of the sun, and mirrors the lit ground: a
-    // fifth of the sunlight times the mean reflectance of the pane, 0.15.
+    // A pane of index 1.5 transmits 91.7 % at the 37 degrees of the sun, and mirrors the lit
+    // ground: a fifth of the sunlight times the mean reflectance of the pane, 0.15.
     let share = noon(&behind) / noon(&open);
     assert!((0.937..0.957).contains(&share), "{share}");
 }
