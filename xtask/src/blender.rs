@@ -3,6 +3,9 @@
 
 use crate::section::Section;
 use anyhow::{Context, Result, bail, ensure};
+use rawzip::time::UtcDateTime;
+use rawzip::{CompressionMethod, ZipArchiveWriter};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -108,50 +111,22 @@ fn files(root: &Path, wheels: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>> {
 /// Returns a zip file without compression, whose bytes depend only on the files. The time of each
 /// file is that at which zip files begin, 1 January 1980.
 fn zip(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>> {
-    let (mut body, mut directory) = (Vec::new(), Vec::new());
+    let start = UtcDateTime::from_components(1980, 1, 1, 0, 0, 0, 0).context("1980-01-01")?;
+    let mut archive = ZipArchiveWriter::new(Vec::new());
     for (name, content) in files {
-        let (at, size) = (u32::try_from(body.len())?, u32::try_from(content.len())?);
-        let mut common = Vec::new();
-        // Version 2.0, names in UTF-8, no compression, and the time and date.
-        [20u16, 0x0800, 0, 0, 0x0021].iter().for_each(|number| common.extend(number.to_le_bytes()));
-        [crc32(content), size, size].iter().for_each(|number| common.extend(number.to_le_bytes()));
-        common.extend(u16::try_from(name.len())?.to_le_bytes());
-        common.extend(0u16.to_le_bytes());
-        body.extend(b"PK\x03\x04");
-        body.extend(&common);
-        body.extend(name.as_bytes());
-        body.extend(content);
-        // Made on Unix, as a file that all can read.
-        directory.extend(b"PK\x01\x02\x14\x03");
-        directory.extend(&common);
-        [0u16; 3].iter().for_each(|number| directory.extend(number.to_le_bytes()));
-        directory.extend((0o100_644u32 << 16).to_le_bytes());
-        directory.extend(at.to_le_bytes());
-        directory.extend(name.as_bytes());
+        let file = archive.new_file(name.as_str()).compression_method(CompressionMethod::STORE);
+        let (mut entry, config) = file.last_modified(start).unix_permissions(0o644).start()?;
+        let mut writer = config.wrap(&mut entry);
+        writer.write_all(content)?;
+        let (_, sums) = writer.finish()?;
+        entry.finish(sums)?;
     }
-    let (count, at, size) = (u16::try_from(files.len())?, u32::try_from(body.len())?, u32::try_from(directory.len())?);
-    body.extend(directory);
-    body.extend(b"PK\x05\x06\0\0\0\0");
-    [count, count].iter().for_each(|number| body.extend(number.to_le_bytes()));
-    [size, at].iter().for_each(|number| body.extend(number.to_le_bytes()));
-    body.extend([0, 0]);
-    Ok(body)
-}
-
-/// Returns the CRC-32 of some bytes, as in zip and PNG files.
-fn crc32(bytes: &[u8]) -> u32 {
-    let step = |crc: u32, _| if crc & 1 == 1 { (crc >> 1) ^ 0xedb8_8320 } else { crc >> 1 };
-    !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), step))
+    Ok(archive.finish()?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn checksum_is_that_of_zip_files() {
-        assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
-    }
 
     #[test]
     fn zip_file_is_read_by_python() {

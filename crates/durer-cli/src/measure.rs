@@ -248,7 +248,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         );
         return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
     }
-    let samples = args.samples.unwrap_or(if args.error.is_some() { 1 << 20 } else { 4096 });
+    let samples = args.samples.unwrap_or_else(|| MeasureOptions::default_samples(args.error));
     let options = MeasureOptions { samples, error: args.error, seed: args.seed, lumens };
     let measured = threads::install(args.threads.map(usize::from), || {
         show_progress("measuring", |progress| measure(&path, &sensors, &options, progress))

@@ -8,6 +8,11 @@ use durer::measure::{MeasureOptions, Measurement, Sensor, measure as measure_lig
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+/// Steps of the progress that `watch` gets.
+const PROGRESS_STEPS: u64 = 1000;
 
 /// Measured light for Python: the irradiance of each channel, the illuminance, its standard error
 /// and the number of samples of each point, and true if rare lights dominate an error.
@@ -15,13 +20,13 @@ type Light<'py> =
     (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, bool);
 
 /// Measures the light at `sensors`: points of shape (n, 3) and unit normals of shape (n, 3).
-/// `precision` is the number of samples and the error target.
+/// `precision` is the number of samples, if it is not the default, and the error target.
 #[pyfunction]
 pub fn measure<'py>(
     py: Python<'py>,
     world: &World,
     sensors: (PyReadonlyArray2<'py, f32>, PyReadonlyArray2<'py, f32>),
-    precision: (u32, Option<f64>),
+    precision: (Option<u32>, Option<f64>),
     pairs: Pairs,
     watch: Option<Py<PyAny>>,
 ) -> PyResult<Light<'py>> {
@@ -34,22 +39,28 @@ pub fn measure<'py>(
     let sensors = vectors(&points)?.into_iter().zip(vectors(&normals)?);
     let sensors: Vec<Sensor> = sensors.map(|(point, normal)| Sensor { point, normal }).collect();
     let lumens = world.world.lumens().unwrap_or(LUMINANCE);
+    let samples = samples.unwrap_or_else(|| MeasureOptions::default_samples(error));
     let settings = MeasureOptions { samples, error, seed: job.seed, lumens };
-    let found = watched(py, options.threads, watch, |cancel, progress| {
+    let (cancel, done) = (AtomicBool::new(false), AtomicU64::new(0));
+    let progress = || (done.load(Relaxed), PROGRESS_STEPS);
+    let found = watched(py, options.threads, watch, (&cancel, &progress), || {
         let context = IntegratorContext {
             world: &world.world,
             settings: job.settings,
             cone: None,
             seed: job.seed,
-            cancel: Some(cancel),
+            cancel: Some(&cancel),
         };
         match job.method.create(context) {
             Integrator::Path(path) | Integrator::Photons(path) => {
-                Some(measure_light(&path, &sensors, &settings, progress))
+                Some(measure_light(&path, &sensors, &settings, &|share| {
+                    done.store((share * PROGRESS_STEPS as f64) as u64, Relaxed);
+                }))
             }
             _ => None,
         }
-    })?;
+    })?
+    .unwrap_or_else(|panic| resume_unwind(panic));
     let Some(Measurement { points, has_rare_light }) = found else {
         return Err(PyValueError::new_err(
             "only path tracing can measure light: the integrator must be path or photons",

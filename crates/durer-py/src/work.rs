@@ -11,15 +11,12 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time between two checks for signals, and between two progress reports.
-pub const POLL_INTERVAL: Duration = Duration::from_millis(50);
-
-/// Steps of the progress that [`watched`] reports.
-const PROGRESS_STEPS: u64 = 1000;
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Entry of the cache of thread pools, with the process id, the requested number of threads, and
 /// the pool.
@@ -31,7 +28,7 @@ static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
 /// Returns the shared pool of this process with the requested number of threads, or `None` if
 /// threads are not available.
-pub fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
+fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     if let Some(known) = pools.iter().find(|known| (known.0, known.1) == (process, asked)) {
@@ -51,11 +48,30 @@ pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() ->
 }
 
 /// Checks for signals such as Ctrl-C, and reports progress to the Python function `watch`.
-pub fn poll(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
+fn poll(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
         watch.map_or(Ok(()), |watch| watch.call1(py, (done, all)).map(|_| ()))
     })
+}
+
+/// Polls until the other end of a channel is dropped, which means that the work has ended. Sets
+/// `cancel` after Ctrl-C or an exception in `watch`.
+fn supervise(
+    end: &Receiver<()>,
+    watch: Option<&Py<PyAny>>,
+    cancel: &AtomicBool,
+    progress: &dyn Fn() -> (u64, u64),
+) -> PyResult<()> {
+    let mut result = Ok(());
+    while end.recv_timeout(POLL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+        if result.is_ok() {
+            let (done, all) = progress();
+            result = poll(watch, done, all);
+            cancel.store(result.is_err(), Relaxed);
+        }
+    }
+    result
 }
 
 /// Object passed to each job of [`each`] so that the job can check whether to stop. A single item
@@ -126,7 +142,6 @@ pub fn each<J: Send>(
         let Some(pool) = pool(asked) else {
             return run_here(jobs);
         };
-        let mut result = Ok(());
         pool.in_place_scope(|scope| {
             let (end, wait) = channel::<()>();
             let one = &one;
@@ -134,52 +149,37 @@ pub fn each<J: Send>(
                 jobs.into_par_iter().with_max_len(1).for_each(one);
                 drop(end);
             });
-            while wait.recv_timeout(POLL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
-                if result.is_ok() {
-                    result = poll(watch.as_ref(), done.load(Relaxed) as u64, all);
-                    stop.store(result.is_err(), Relaxed);
-                }
-            }
-        });
-        result
+            supervise(&wait, watch.as_ref(), &stop, &|| (done.load(Relaxed) as u64, all))
+        })
     });
     result?;
     watch.map_or(Ok(()), |watch| watch.call1(py, (all, all)).map(|_| ()))
 }
 
-/// Runs one piece of work on the threads of a pool. The work receives a flag that is set after
-/// Ctrl-C or an exception in `watch`, and a function that takes its progress from 0 to 1.
+/// Runs one piece of work on the threads of a pool, and passes `progress`, which returns the work
+/// done and the total work, to `watch`. Sets `cancel` after Ctrl-C or an exception in `watch`. If
+/// the work panics, returns the panic.
 pub fn watched<R: Send>(
     py: Python,
     asked: Option<usize>,
     watch: Option<Py<PyAny>>,
-    work: impl FnOnce(&AtomicBool, &(dyn Fn(f64) + Sync)) -> R + Send,
-) -> PyResult<R> {
-    let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
-    let progress = |share: f64| done.store((share * PROGRESS_STEPS as f64) as usize, Relaxed);
+    (cancel, progress): (&AtomicBool, &(dyn Fn() -> (u64, u64) + Sync)),
+    work: impl FnOnce() -> R + Send,
+) -> PyResult<std::thread::Result<R>> {
     let (answer, result) = py.detach(|| {
         std::thread::scope(|scope| {
             let (end, wait) = channel::<()>();
-            let (stop, progress) = (&stop, &progress);
             let thread = scope.spawn(move || {
-                let run = || work(stop, progress);
                 let answer = match pool(asked) {
-                    Some(pool) => pool.install(run),
-                    None => run(),
+                    Some(pool) => pool.install(work),
+                    None => work(),
                 };
                 drop(end);
                 answer
             });
-            let mut result = Ok(());
-            while wait.recv_timeout(POLL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
-                if result.is_ok() {
-                    result = poll(watch.as_ref(), done.load(Relaxed) as u64, PROGRESS_STEPS);
-                    stop.store(result.is_err(), Relaxed);
-                }
-            }
+            let result = supervise(&wait, watch.as_ref(), cancel, progress);
             (thread.join(), result)
         })
     });
-    result?;
-    answer.map_err(|panic| std::panic::resume_unwind(panic))
+    result.map(|()| answer)
 }

@@ -1,7 +1,7 @@
 //! Scenes and partial renders, which back `durer.World` and `durer.Part`.
 
 use crate::rays::{self, JOB, Rays};
-use crate::work::{POLL_INTERVAL, each, install, poll, pool};
+use crate::work::{each, install, watched};
 use durer::check::{CheckInput, check};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
@@ -19,8 +19,8 @@ use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, mpsc};
 
 create_exception!(
     durer,
@@ -175,31 +175,10 @@ impl World {
     /// Continues to render a part. Returns true if the part is finished.
     fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
         let (control, part) = (options(&pairs)?.control(), part.0.clone());
-        let (stop, interrupted) = py.detach(|| {
-            std::thread::scope(|scope| {
-                let (end, wait) = mpsc::channel::<()>();
-                let control = &control;
-                let work = scope.spawn(move || {
-                    let render = || part.render(&self.world, control, &mut |_, _| {});
-                    let stop = match pool(None) {
-                        Some(pool) => pool.install(render),
-                        None => render(),
-                    };
-                    drop(end);
-                    stop
-                });
-                let mut result = Ok(());
-                while wait.recv_timeout(POLL_INTERVAL) == Err(mpsc::RecvTimeoutError::Timeout) {
-                    if result.is_ok() {
-                        result =
-                            poll(watch.as_ref(), control.done_work.load(Relaxed), control.total_work.load(Relaxed));
-                        control.cancel.store(result.is_err(), Relaxed);
-                    }
-                }
-                (work.join(), result)
-            })
-        });
-        interrupted?;
+        let progress = || (control.done_work.load(Relaxed), control.total_work.load(Relaxed));
+        let stop = watched(py, None, watch, (&control.cancel, &progress), || {
+            part.render(&self.world, &control, &mut |_, _| {})
+        })?;
         match stop.map_err(|_| failed("the render failed; this is a bug in durer"))?.map_err(failed)? {
             RenderOutcome::Finished => Ok(true),
             RenderOutcome::OutOfTime => Ok(false),

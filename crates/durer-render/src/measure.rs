@@ -33,6 +33,13 @@ pub struct MeasureOptions {
     pub lumens: Color,
 }
 
+impl MeasureOptions {
+    /// Returns the usual number of samples, which depends on the error target.
+    pub fn default_samples(error: Option<f64>) -> u32 {
+        if error.is_some() { 1 << 20 } else { 4096 }
+    }
+}
+
 /// Light that arrives at a [`Sensor`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {

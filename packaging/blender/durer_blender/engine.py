@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from . import camera, library
+from .pixels import rgba
 from .scene import Exporter
 from .units import ExportError
 
@@ -185,10 +186,8 @@ class DurerRenderEngine(bpy.types.RenderEngine):
 
     def _fill(self, result, pictures, view, passes):
         """Copies pictures to the passes of a result. Blender has the bottom row first."""
-        color = pictures["color"]
-        alpha = pictures["alpha"] if "alpha" in pictures else np.ones(color.shape[:2], np.float32)
         layer = result.layers[0]
-        _set(layer, "Combined", np.concatenate([color, alpha[..., None]], -1))
+        _set(layer, "Combined", rgba(pictures))
         for name, (_, _, _, _, source) in passes.items():
             _set(layer, name, _pass(name, pictures[source], view))
 

@@ -35,6 +35,13 @@ def is_eight_bit(values):
     return bool((np.abs(scaled - np.rint(scaled)) < 1e-3).all() and values.min() >= 0 and values.max() <= 1)
 
 
+def rgba(pictures):
+    """Returns a rendered picture of shape (height, width, 4). Without alpha, it is opaque."""
+    color = pictures["color"]
+    alpha = pictures["alpha"] if "alpha" in pictures else np.ones(color.shape[:2], np.float32)
+    return np.concatenate([color, alpha[..., None]], -1)
+
+
 class Textures:
     """Textures of a scene, with their files. Equal textures are stored once."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 
 from . import camera, library
+from .pixels import rgba
 from .scene import Exporter
 from .units import ExportError
 
@@ -64,9 +65,7 @@ class Preview:
                 raise _Stopped
 
         def take(pictures):
-            color = pictures["color"]
-            alpha = pictures["alpha"] if "alpha" in pictures else np.ones(color.shape[:2], np.float32)
-            self.picture, self._is_new = np.concatenate([color, alpha[..., None]], -1)[::-1], True
+            self.picture, self._is_new = rgba(pictures)[::-1], True
 
         try:
             durer = library.package()

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::plan::{self, Legend};
-use super::printed::vector;
+use super::printed::{left_out, vector};
 use super::{MeasureArgs, enclosed, print_written_to_error};
 use crate::failure::Failure;
 use crate::progress::show_progress;
@@ -146,10 +146,7 @@ impl<'a> Points<'a> {
                 continue;
             }
             let [spatial, error] = self.found.spatial_autonomy(&outside, ENOUGH);
-            let left_out = match all.len() - outside.len() {
-                0 => String::new(),
-                count => format!("; {} of {} points; {count} inside an object", outside.len(), all.len()),
-            };
+            let left_out = left_out(outside.len(), all.len());
             print_error_line(&format!(
                 "note: grid {}: daylight autonomy ({target} lux) {:.1} % on average, sDA {target}/50% {:.1} % (error {:.1}), \
                  useful daylight {:.1} %, ASE 1000,250h {:.1} %{left_out}",

@@ -25,6 +25,14 @@ pub fn vector(v: Vec3) -> String {
     format!("{},{},{}", v.x, v.y, v.z)
 }
 
+/// Describes the points of a grid that its figures leave out, or returns nothing if they use all.
+pub fn left_out(outside: usize, all: usize) -> String {
+    match all - outside {
+        0 => String::new(),
+        count => format!("; {outside} of {all} points; {count} inside an object"),
+    }
+}
+
 impl<'a> Groups<'a> {
     /// Iterates over the grids with their values. Points inside objects have no value.
     pub fn grids(&self) -> impl Iterator<Item = (&'a Grid, Vec<Option<Measured>>)> {
@@ -53,10 +61,7 @@ impl<'a> Groups<'a> {
             let outside = outside(&points);
             let Some(figures) = Uniformity::of(&outside) else { continue };
             let Uniformity { min, average, max } = figures;
-            let left_out = match points.len() - outside.len() {
-                0 => String::new(),
-                count => format!("; {} of {} points; {count} inside an object", outside.len(), points.len()),
-            };
+            let left_out = left_out(outside.len(), points.len());
             print_error_line(&format!(
                 "note: grid {}: average {average:.4}, minimum {min:.4}, maximum {max:.4} lux, U0 {:.3}, U1 {:.3}{left_out}",
                 number + 1,

@@ -154,7 +154,9 @@ impl Reader<'_, '_> {
     /// next.
     fn block_continues_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
-        for i in usize::from(self.at_named_block()).. {
+        let is_named = self.at_named_block();
+        let is_block = is_named || self.at_open();
+        for i in usize::from(is_named).. {
             match self.ahead(i).map(|t| t.kind) {
                 Some(TokenKind::Open) => depth += 1,
                 Some(TokenKind::Close) => depth = depth.saturating_sub(1),
@@ -165,7 +167,6 @@ impl Reader<'_, '_> {
                 let Some(next) = self.ahead(i + 1) else { return false };
                 let word = self.text(next.span);
                 let field = fields.iter().any(|f| f.keywords.iter().any(|(w, _)| *w == word));
-                let is_block = self.at_open() || self.at_named_block();
                 return field || !is_block && next.kind == TokenKind::Close;
             }
         }

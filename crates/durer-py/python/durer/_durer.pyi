@@ -79,7 +79,7 @@ def read_mesh(path: os.PathLike[str], options: list[tuple[str, str]]) -> tuple[_
 def measure(
     world: World,
     sensors: tuple[_Floats, _Floats],
-    precision: tuple[int, Optional[float]],
+    precision: tuple[Optional[int], Optional[float]],
     options: list[tuple[str, str]],
     watch: _Watch,
 ) -> tuple[_Doubles, _Doubles, _Doubles, npt.NDArray[np.uint32], bool]: ...

@@ -557,12 +557,11 @@ class World:
             raise ValueError("points must be finite, and normals finite and not zero")
         if error is not None and not 0 < error <= 1:
             raise ValueError(f"error must be a share from 0 to 1, but is {error!r}")
-        most = samples if samples is not None else 4096 if error is None else 1 << 20
-        if not isinstance(most, (int, np.integer)) or not 2 <= most <= 1 << 24:
-            raise ValueError(f"samples must be a whole number from 2 to {1 << 24}, but is {most!r}")
+        if samples is not None and (not isinstance(samples, (int, np.integer)) or not 2 <= samples <= 1 << 24):
+            raise ValueError(f"samples must be a whole number from 2 to {1 << 24}, but is {samples!r}")
         given = self._all({"integrator": "path", **options})
         rows = np.ascontiguousarray(at.reshape(-1, 3)), np.ascontiguousarray(towards / lengths, np.float32).reshape(-1, 3)
-        found = with_python_names(lambda: _durer.measure(self._world, rows, (int(most), error), given, watch(progress)))
+        found = with_python_names(lambda: _durer.measure(self._world, rows, (samples, error), given, watch(progress)))
         irradiance, lux, deviation, count, rare = found
         return Illuminance(
             lux.reshape(shape), deviation.reshape(shape), irradiance.reshape(*shape, 3), count.reshape(shape), rare

@@ -112,7 +112,7 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
             // A telescope is meant to show distant objects.
             let Some(size) = pixels(scene_probe, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
             let degrees = angle.to_degrees();
-            let mut diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+            let mut diagnostic = narrow(angle)
                 .effect(format!("less than 1/{} of the scene's width is visible", number((size / larger).floor())))
                 .help("use a larger angle: angles are in degrees, and 30 to 60 degrees are usual");
             if let Some(place) = scene_probe.field_span(span, &["angle", "fov"]).filter(|_| radians(angle)) {
@@ -122,7 +122,7 @@ pub(super) fn too_narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
                     number(degrees)
                 ));
             }
-            vec![Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true)]
+            vec![at_angle(scene_probe, diagnostic)]
         }
         Camera::Orthographic(camera) => {
             // A picture that the surface of a single object fills shows nothing useful.
@@ -151,20 +151,36 @@ fn part_of_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding
     let objects = scene_probe.world().objects();
     let first = scene_probe.hits().next()?.1.object;
     let whole = scene_probe.probes.iter().all(|probe| probe.hit.as_ref().is_some_and(|hit| hit.object == first));
-    let outside = scene_probe.visibilities().iter().zip(objects);
-    let outside = outside.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let outside = outside_count(scene_probe);
     let part = sizes.iter().all(|size| *size > 3.0 * scene_probe.larger_side());
     if angle >= VERY_NARROW || !whole || !part || outside == 0 || objects[first as usize].bounds().is_none() {
         return None;
     }
-    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+    let diagnostic = narrow(angle)
         .effect(format!(
             "a part of one object fills the picture, and {} outside the picture",
             super::finding::counted(outside, "object is", "objects are")
         ))
         .help(radians_help(scene_probe, angle));
+    Some(at_angle(scene_probe, diagnostic))
+}
+
+/// Returns a warning about a narrow field of view.
+fn narrow(angle: f32) -> Diagnostic {
+    Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+}
+
+/// Returns the finding of a diagnostic about the camera's field of view, which spoils the whole
+/// picture.
+fn at_angle(scene_probe: &SceneProbe, diagnostic: Diagnostic) -> Finding {
     let span = scene_probe.input.scene.camera_span;
-    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
+    Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true)
+}
+
+/// Returns the number of bounded objects outside the picture.
+fn outside_count(scene_probe: &SceneProbe) -> usize {
+    let objects = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
+    objects.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count()
 }
 
 /// Returns the field of view across the larger side of the picture, in degrees, of a camera with a
@@ -197,41 +213,33 @@ const RADIANS: std::ops::Range<f32> = 0.2..2.1;
 /// front of the camera.
 fn angle_in_radians(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let angle = field_of_view(scene_probe.world().camera())?;
-    let objects = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
-    let outside = objects.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let outside = outside_count(scene_probe);
     let is_cut = sizes.iter().any(|size| *size > 1.5 * scene_probe.larger_side());
     if !RADIANS.contains(&angle) || angle.fract() == 0.0 || outside == 0 && !is_cut {
         return None;
     }
-    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+    let diagnostic = narrow(angle)
         .effect("the picture shows only a tiny part of what is in front of the camera")
         .help(radians_help(scene_probe, angle));
-    let span = scene_probe.input.scene.camera_span;
-    let diagnostic = match scene_probe.field_span(span, &["angle", "fov"]) {
-        Some(place) => diagnostic.fix(place, number(angle.to_degrees().round())),
-        None => diagnostic,
-    };
-    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
+    let place = scene_probe.field_span(scene_probe.input.scene.camera_span, &["angle", "fov"]);
+    Some(at_angle(scene_probe, diagnostic.fix_at(place, number(angle.to_degrees().round()))))
 }
 
 /// Reports a narrow field of view that one object fills while most other objects are outside it.
 fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let angle = field_of_view(scene_probe.world().camera())?;
-    let visibilities = scene_probe.visibilities().iter().zip(scene_probe.world().objects());
-    let out =
-        visibilities.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let out = outside_count(scene_probe);
     let filled = sizes.iter().all(|size| *size > 0.9 * scene_probe.larger_side());
     if angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
         return None;
     }
-    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(angle)))
+    let diagnostic = narrow(angle)
         .effect(match sizes.len() {
             1 => format!("one object fills the picture, and {out} are outside it"),
             n => format!("{n} objects fill the picture, and {out} are outside it"),
         })
         .help("check whether a digit is missing: 30 to 60 degrees are usual");
-    let span = scene_probe.input.scene.camera_span;
-    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["angle", "fov"])).affecting_whole_picture(true))
+    Some(at_angle(scene_probe, diagnostic))
 }
 
 /// Returns the ratio of an object's size to that of the largest other object if it exceeds

@@ -73,7 +73,6 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
         let outside = point_outside(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
             .label("this point is inside the object")
-            .related(scene_probe.object_span(object), "the object around the camera")
             .effect(match dark {
                 _ if swallowed && own * 100 < rays * 99 => "the object surrounds the camera, so its inside is visible",
                 _ if walls && own * 100 < rays * 99 => {
@@ -94,8 +93,7 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
                     format!("move the camera backwards out of the object, for example to `center {}`", vector(outside))
                 }
             });
-        let diagnostic = scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]);
-        findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
+        findings.push(around_camera(scene_probe, object, diagnostic).affecting_whole_picture(true));
     }
     findings
 }
@@ -104,19 +102,23 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
 fn inside_glass(scene_probe: &SceneProbe, object: u32) -> Finding {
     let name = scene_probe.object(object);
     let diagnostic = Diagnostic::note(format!("the camera is inside the {name}, which is transparent"))
-        .related(scene_probe.object_span(object), "the object around the camera")
         .effect("everything is seen through its surface from inside, so the object itself is hardly visible")
         .help("if the camera should not be inside, make the object smaller or move the camera out of it");
-    Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]))
+    around_camera(scene_probe, object, diagnostic)
 }
 
 /// Returns a warning about a camera inside an object whose backs are hidden.
 fn inside_hidden_backs(scene_probe: &SceneProbe, object: u32) -> Finding {
     let name = scene_probe.object(object);
     let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
-        .related(scene_probe.object_span(object), "the object around the camera")
         .effect("the object is invisible: its surface is hidden from behind")
         .help("move the camera out of the object, or make the material double-sided");
+    around_camera(scene_probe, object, diagnostic)
+}
+
+/// Completes a finding about an object around the camera with the positions of both.
+fn around_camera(scene_probe: &SceneProbe, object: u32, diagnostic: Diagnostic) -> Finding {
+    let diagnostic = diagnostic.related(scene_probe.object_span(object), "the object around the camera");
     Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]))
 }
 

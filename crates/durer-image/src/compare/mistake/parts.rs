@@ -180,8 +180,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Returns the share of the squared difference in pixels whose colours in the picture lie between
-/// those of the surrounding pixels in the reference.
+/// Returns the share of the squared difference in pixels of the picture whose colours are in the
+/// range of the surrounding pixels of the reference.
 fn from_reference(reference: &View, at_edges: &[Sample]) -> f64 {
     let is_between = |s: &&Sample| {
         let around = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| reference.at(s.x + dx, s.y + dy)));

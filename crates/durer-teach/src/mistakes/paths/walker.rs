@@ -12,6 +12,7 @@ use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
 use durer_render::integrator::{RenderSettings, Whitted};
 use durer_render::world::emitters::{LightId, LightSample, Receiver};
 use durer_render::world::{Geometry, Shading, SurfaceInteraction, World};
+use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp};
 use durer_scene::shape::{Primitive, Shape as _};
 use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
@@ -357,12 +358,12 @@ impl<'w> BuggyPathTracer<'w> {
         eta: f32,
     ) -> Option<(Vec3, Spectrum)> {
         let (n, wo) = (shading.frame.normal, shading.frame.to_world(shading.wo));
-        let fresnel = if shading.bsdf.passes_light() { fresnel(wo.dot(n).abs(), eta) } else { 1.0 };
+        let fresnel = if shading.bsdf.passes_light() { fresnel::dielectric(wo.dot(n).abs(), eta) } else { 1.0 };
         if wi.dot(n) * wo.dot(n) >= 0.0 {
             return match self.bugs.refraction {
                 RefractionBug::HalfChosen if fresnel < 1.0 => Some((wi, 0.5 * weight)),
                 RefractionBug::FresnelTwice => Some((wi, fresnel * weight)),
-                // What would be reflected is refracted instead.
+                // Refract the light that should be reflected.
                 RefractionBug::NoReflection if fresnel < 1.0 => {
                     let tangent = (wo.dot(n) * n - wo) / eta;
                     let cosine = (1.0 - tangent.length_squared()).max(0.0).sqrt();
@@ -393,18 +394,6 @@ impl<'w> BuggyPathTracer<'w> {
             RefractionBug::Straight => (-wo, weight),
         })
     }
-}
-
-/// Returns the fraction of unpolarised light that a surface reflects. `eta` is the index of
-/// refraction behind the surface, divided by the index in front.
-fn fresnel(cosine: f32, eta: f32) -> f32 {
-    let k = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
-    if k <= 0.0 {
-        return 1.0;
-    }
-    let behind = k.sqrt();
-    let (s, p) = ((cosine - eta * behind) / (cosine + eta * behind), (eta * cosine - behind) / (eta * cosine + behind));
-    0.5 * (s * s + p * p)
 }
 
 /// Returns the weight that the power heuristic gives to a sample with pdf `a`.

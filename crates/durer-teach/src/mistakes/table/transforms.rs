@@ -69,10 +69,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "translation by (x, y, z)",
         "translation by (-x, -y, -z)",
         |v, _| {
-            v.set_transforms(&|ops: &[MatrixOp], rules| {
-                let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
-                MatrixOp::product(&ops.iter().map(back).collect::<Vec<_>>(), rules)
-            });
+            let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
+            v.set_transforms(&|ops, rules| changed(ops, rules, back));
         },
     ),
     row(
@@ -82,14 +80,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "scale by s",
         "scale by 1 / s",
         |v, _| {
-            v.set_transforms(&|ops: &[MatrixOp], rules| {
-                let inverse = |op: &MatrixOp| match *op {
-                    MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
-                    MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
-                    other => other,
-                };
-                MatrixOp::product(&ops.iter().map(inverse).collect::<Vec<_>>(), rules)
-            });
+            let inverse = |op: &MatrixOp| match *op {
+                MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
+                MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
+                other => other,
+            };
+            v.set_transforms(&|ops, rules| changed(ops, rules, inverse));
         },
     ),
     row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
@@ -182,12 +178,11 @@ fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffi
         MatrixOp::Rotate(axis, angle) => MatrixOp::Rotate(axis, change(angle)),
         other => other,
     };
-    let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
-    MatrixOp::product(&changed, rules)
+    changed(ops, rules, change)
 }
 
 /// Returns the product of a transform's matrices after each of them was changed.
-fn changed(ops: &[MatrixOp], rules: MatrixRules, change: fn(&MatrixOp) -> MatrixOp) -> DAffine3 {
+fn changed(ops: &[MatrixOp], rules: MatrixRules, change: impl Fn(&MatrixOp) -> MatrixOp) -> DAffine3 {
     MatrixOp::product(&ops.iter().map(change).collect::<Vec<_>>(), rules)
 }
 
