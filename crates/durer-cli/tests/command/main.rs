@@ -1,4 +1,5 @@
-//! Tests of the `durer` command, which run the program. They are one program, so that they are linked once.
+//! Tests of the `durer` command, which run the program.
+//! They are one program, so that they are linked once.
 
 mod book;
 mod cameras;

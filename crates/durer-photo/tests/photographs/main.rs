@@ -1,4 +1,5 @@
-//! Tests of the reconstruction of cameras from photographs. They are one program, so that they are linked once.
+//! Tests of the reconstruction of cameras from photographs.
+//! They are one program, so that they are linked once.
 
 mod closed_loop;
 mod conventions;

@@ -1,4 +1,5 @@
-//! Tests of sessions. They are one program, so that they are linked once.
+//! Tests of sessions.
+//! They are one program, so that they are linked once.
 
 #[path = "../page/mod.rs"]
 mod page;

@@ -1,4 +1,5 @@
-//! Tests of the library as other programs see it. They are one program, so that they are linked once.
+//! Tests of the library as other programs see it.
+//! They are one program, so that they are linked once.
 
 mod examples;
 mod layering;
