@@ -2,7 +2,7 @@
 //! pilot samples.
 
 use super::PixelRect;
-use super::allocation::{distribute, neighbor_variances};
+use super::allocation::{distribute, neighbor_variances, weight};
 use super::part::PartialRender;
 use std::sync::Arc;
 
@@ -21,14 +21,13 @@ impl PartialRender {
             let places = self.blocks.rect(index).pixel_positions();
             places.zip(own.iter()).for_each(|((x, y), &variance)| variances[window.index(x, y)] = variance);
         }
-        let mut deviations = neighbor_variances(&variances, window.width as usize);
-        deviations.iter_mut().for_each(|variance| *variance = variance.sqrt());
-        let mut targets = vec![0; deviations.len()];
+        let weights: Vec<f32> = neighbor_variances(&variances, window.width as usize).into_iter().map(weight).collect();
+        let mut targets = vec![0; weights.len()];
         for color in 0..2 {
             let is_of_color = |&(x, y): &(u32, u32)| (x ^ y) & 1 == color;
             let pixels: Vec<usize> =
                 window.pixel_positions().filter(is_of_color).map(|(x, y)| window.index(x, y)).collect();
-            let own: Vec<f32> = pixels.iter().map(|&pixel| deviations[pixel]).collect();
+            let own: Vec<f32> = pixels.iter().map(|&pixel| weights[pixel]).collect();
             pixels.iter().zip(distribute(&own, samples)).for_each(|(&pixel, target)| targets[pixel] = target);
         }
         let of_block = |rect: PixelRect| -> Arc<[u32]> {

@@ -153,9 +153,10 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
 }
 
 #[test]
-fn samples_follow_the_standard_deviation() {
+fn samples_follow_the_weights() {
     // Each pixel gets its pilot samples. The other samples are distributed in proportion to the
-    // deviation.
+    // weights.
+    assert_eq!([0.0, 1.0, 27.0].map(weight), [0.0, 1.0, 3.0]);
     assert_eq!(distribute(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(distribute(&[1.0; 5], 100), [100; 5]);
     // Either no pixel needs more samples, or one pixel gets the maximum.
