@@ -1,4 +1,4 @@
-import type { ComponentChild } from "preact";
+import { type ComponentChild, render } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { Lecture } from "../lecture/lecture";
 import type { Topic } from "../lecture/topic";
@@ -16,6 +16,7 @@ export function Lesson({ report }: { report: LessonReport }) {
     window.addEventListener("hashchange", follow);
     return () => window.removeEventListener("hashchange", follow);
   }, []);
+  useEffect(() => printAll(topics), [topics]);
   return (
     <Shell
       command={`lesson ${report.scene}`}
@@ -24,6 +25,39 @@ export function Lesson({ report }: { report: LessonReport }) {
     >
       <Lecture engine={null} name="lesson" topics={topics} topic={at} />
     </Shell>
+  );
+}
+
+/** Prints all steps in place of the one on the screen. Returns a function that ends this. */
+function printAll(topics: Topic[]): () => void {
+  const sheet = document.createElement("div");
+  sheet.className = "printed report";
+  document.body.append(sheet);
+  // The browser prints right after the event, so the steps are added without delay.
+  const show = () => render(<Printed topics={topics} />, sheet);
+  const hide = () => render(null, sheet);
+  window.addEventListener("beforeprint", show);
+  window.addEventListener("afterprint", hide);
+  return () => {
+    window.removeEventListener("beforeprint", show);
+    window.removeEventListener("afterprint", hide);
+    hide();
+    sheet.remove();
+  };
+}
+
+function Printed({ topics }: { topics: Topic[] }) {
+  return (
+    <>
+      {topics.map(({ id, title, lead, text, Figure }) => (
+        <section key={id}>
+          <h2>{title}</h2>
+          {lead && <p>{lead}</p>}
+          {text}
+          <Figure />
+        </section>
+      ))}
+    </>
   );
 }
 
@@ -71,15 +105,15 @@ function* text(step: LessonStep): Generator<ComponentChild> {
   yield <p class="facts">{step.facts}</p>;
   if (step.places.length > 0)
     yield (
-      <p class="places">
-        In the source:{" "}
+      <details class="places">
+        <summary>In Dürer's source</summary>
         {step.places.map(([file, symbol], i) => (
           <span key={i}>
             {i > 0 && "; "}
             <code>{file}</code> <code>{symbol}</code>
           </span>
         ))}
-      </p>
+      </details>
     );
 }
 
