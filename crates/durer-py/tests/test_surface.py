@@ -224,3 +224,16 @@ def test_meshes_are_refitted_and_objects_moved():
     assert (scene.closest(o, d).t == durer.Scene([mesh, (mesh, there)]).closest(o, d).t).all()
     with pytest.raises(ValueError, match="there is no object 2: the scene has 2 objects"):
         scene.move({2: there})
+
+
+def test_area_and_volume():
+    for name, (vertices, faces) in SHAPES.items():
+        far = durer.Mesh(np.asarray(vertices) + 1e5, faces)
+        corners = np.asarray(far.vertices, np.float64)[far.faces]
+        crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        volume = ((corners[:, 0] - corners[0, 0]) * crossed).sum() / 6
+        assert np.isclose(far.area, np.linalg.norm(crossed, axis=1).sum() / 2, rtol=1e-6), name
+        assert np.isclose(far.volume, volume, rtol=1e-6), name
+    cube = durer.Mesh(2 * CUBE - 1, CUBE_FACES)
+    assert (cube.area, abs(cube.volume)) == (24, 8)
+    assert durer.Mesh(2 * CUBE - 1, np.array(CUBE_FACES)[:, ::-1]).volume == -cube.volume

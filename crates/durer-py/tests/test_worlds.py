@@ -334,3 +334,24 @@ def test_denoised_pictures_are_closer_to_the_noiseless_one():
     assert clean.shape == (48, 48, 3)
     assert np.abs(clean - truth).mean() < 0.7 * np.abs(noisy["color"] - truth).mean()
     assert (clean == world.denoise(noisy.part)["denoised"]).all()
+
+
+def test_several_images_are_saved_side_by_side(scenes, tmp_path):
+    pictures = durer.load(scenes / "sphere.txt").render(size=(8, 6), samples=1, show="color,depth")
+    assert pictures.save(tmp_path / "a.png") == [tmp_path / "a.color.png", tmp_path / "a.depth.png"]
+    assert pictures.save(str(tmp_path / "a.exr")) == [tmp_path / "a.exr"]
+    values, is_display = durer.read(tmp_path / "a.depth.png")
+    assert values.shape == (6, 8, 3) and is_display
+    with pytest.raises(ValueError, match="no image 'normals'; the images are color, depth"):
+        pictures.file("a.png", layer="normals")
+
+
+def test_arrays_are_written_as_pictures(tmp_path):
+    bytes = np.arange(6 * 8 * 3, dtype=np.uint8).reshape(6, 8, 3)
+    durer.write(tmp_path / "bytes.png", bytes)
+    assert (np.rint(durer.read(tmp_path / "bytes.png")[0] * 255) == bytes).all()
+    light = np.linspace(0, 4, 6 * 8 * 3, dtype=np.float32).reshape(6, 8, 3)
+    durer.write(tmp_path / "light.pfm", light)
+    assert (durer.read(tmp_path / "light.pfm")[0] == light).all()
+    with pytest.raises(ValueError, match="picture must have the shape"):
+        durer.write(tmp_path / "wrong.png", np.zeros(5))

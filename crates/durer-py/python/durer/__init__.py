@@ -16,7 +16,7 @@ from . import words
 from ._durer import RenderError, __version__
 from ._errors import SceneError
 from .hits import RECORD, AllHits, Hits, Nearest
-from .pictures import compare, read
+from .pictures import compare, read, write
 from .rays import Mesh, Scene
 from .things import Difference, Group, Intersection, Merge, Model, Moved, Object, Thing, Union_ as Union, Xor
 from .words import *
@@ -25,7 +25,7 @@ from .world import Illuminance, Part, Pictures, Surfaces, World, check, kinds, l
 __all__ = [
     "RECORD", "AllHits", "Difference", "Group", "Hits", "Illuminance", "Intersection", "Merge", "Mesh", "Model", "Moved", "Nearest", "Object",
     "Part", "Pictures", "RenderError", "Scene", "SceneError", "Surfaces", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
-    "kinds", "load", "options", "read", *words.__all__,
+    "kinds", "load", "options", "read", "write", *words.__all__,
 ]  # fmt: skip
 
 #: Modules that are imported on first access, because they are rarely used or need other packages.

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import Floats, as_array
-from .world import PathLike, Pictures
+from .world import PathLike, Pictures, _write
 
 
 def read(path: PathLike) -> tuple[Floats, bool]:
@@ -20,13 +20,34 @@ def read(path: PathLike) -> tuple[Floats, bool]:
     conversion, of shape (height, width, 3), and True if they are display values from 0 to 1 instead
     of linear light.
 
-    >>> world.render(size=(40, 30), samples=1).save("picture.png")
+    >>> paths = world.render(size=(40, 30), samples=1).save("picture.png")
     >>> values, is_display = durer.read("picture.png")
     >>> values.shape, is_display
     ((30, 40, 3), True)
     """
     values, width, height, display = _durer.decode(Path(path).read_bytes(), os.fspath(path))
     return values.reshape(height, width, 3), display
+
+
+def write(
+    path: PathLike,
+    picture: npt.ArrayLike,
+    *,
+    transfer: str = "srgb",
+    exposure: float = 0.0,
+    tone: str = "none",
+    bits: int = 8,
+) -> None:
+    """Writes an array of shape (height, width, 3) to an image file: png, jpg, webp, tga, bmp, ppm,
+    pfm, hdr or exr. Values of type uint8 are display values, which are stored unchanged; others are
+    linear light, to which `exposure`, `tone` and `transfer` are applied as in `Pictures.save`.
+
+    >>> durer.write("grey.png", np.full((30, 40, 3), 0.5))
+    """
+    values, is_display = _scaled("picture", picture)
+    shown = (2.0**exposure, tone, transfer, bits)
+    content = _durer.encode(os.fspath(path), [("color", values, None, not is_display)], shown)
+    _write(Path(path), content)
 
 
 def compare(

@@ -388,6 +388,33 @@ class Mesh(_Rays):
         """True if the mesh has no open edges, so that it has a well-defined inside."""
         return self.open_edges == 0
 
+    @cached_property
+    def area(self) -> float:
+        """Area of the surface, the sum over all triangles.
+
+        >>> durer.Mesh([[0, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 2]]).area
+        1.0
+        """
+        return float(np.linalg.norm(self._crossed[1], axis=1).sum() / 2)
+
+    @cached_property
+    def volume(self) -> float:
+        """Volume inside the mesh, which is negative if its triangles face inwards. It has a meaning
+        only if `is_closed` is true.
+
+        >>> corners = [[0, 0, 0], [6, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> durer.Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).volume
+        1.0
+        """
+        corner, crossed = self._crossed
+        return float((corner * crossed).sum() / 6)
+
+    @property
+    def _crossed(self) -> tuple[Doubles, Doubles]:
+        """First corners of the triangles, and cross products of the edges that begin there."""
+        a, b, c = self._own.astype(np.float64)[self.faces].swapaxes(0, 1)
+        return a, np.cross(b - a, c - a)
+
     @property
     def normals(self) -> Floats:
         """Unit normals of all triangles; 0 for triangles without area."""

@@ -56,10 +56,17 @@ class Pictures(dict[str, Floats]):
         return self.part.hash
 
     def file(
-        self, name: str, transfer: str = "srgb", *, exposure: float = 0.0, tone: str = "none", bits: int = 8
+        self,
+        name: str,
+        transfer: str = "srgb",
+        *,
+        exposure: float = 0.0,
+        tone: str = "none",
+        bits: int = 8,
+        layer: Optional[str] = None,
     ) -> bytes:
         """Returns the bytes of an image file. The extension of `name` selects the format. `.exr`
-        files contain all images; other files contain the first.
+        files contain all images; other files contain the first. `layer` selects another one.
 
         The options affect formats with integer values. `exposure` is in stops, each of which
         doubles the brightness, `tone` is "none", "reinhard", "aces", "agx" or "khronos-neutral",
@@ -72,9 +79,13 @@ class Pictures(dict[str, Floats]):
         if not np.isfinite(exposure):
             raise ValueError(f"exposure must be a number of stops, but is {exposure!r}")
         layers = []
-        for layer, width, height, values, alpha in self._layers(integers):
-            color = layer in ("color", "denoised")
-            layers.append((layer, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        for own, width, height, values, alpha in self._layers(integers):
+            color = own in ("color", "denoised")
+            layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        if layer is not None:
+            layers = [row for row in layers if row[0] == layer]
+            if not layers:
+                raise ValueError(f"there is no image {layer!r}; the images are {', '.join(self)}")
         shown = (2.0**exposure, tone, transfer, bits)
         return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], shown)
 
@@ -84,11 +95,30 @@ class Pictures(dict[str, Floats]):
 
     def save(
         self, path: PathLike, transfer: str = "srgb", *, exposure: float = 0.0, tone: str = "none", bits: int = 8
-    ) -> None:
-        """Writes the images to a file: png, jpg, webp, tga, bmp, ppm, pfm, hdr or exr. Options are
-        those of `file`."""
-        content = self.file(os.fspath(path), transfer, exposure=exposure, tone=tone, bits=bits)
-        _write(Path(path), content)
+    ) -> list[Path]:
+        """Writes the images, and returns the paths of the files. The extension selects the format:
+        png, jpg, webp, tga, bmp, ppm, pfm, hdr or exr. An `.exr` file contains all images. In other
+        formats, several images are written to files such as `picture.color.png` and
+        `picture.depth.png`.
+
+        `exposure` is in stops, `tone` is "none", "reinhard", "aces", "agx" or "khronos-neutral",
+        `transfer` is "srgb", "linear" or "course", and `bits` is 8 or 16 (png and ppm).
+
+        >>> [path.name for path in world.render(show="color,depth", size=(8, 8)).save("ball.png")]
+        ['ball.color.png', 'ball.depth.png']
+        """
+        path = Path(path)
+        names: list[Optional[str]] = [row[0] for row in self.part._part.pictures(False)]
+        if self._denoised is not None:
+            names[0] = self._denoised[0]
+        several = len(names) > 1 and path.suffix.lower() != ".exr"
+        saved = []
+        for name in names if several else [None]:
+            written = path.with_suffix(f".{name}{path.suffix}") if name is not None else path
+            content = self.file(written.name, transfer, exposure=exposure, tone=tone, bits=bits, layer=name)
+            _write(written, content)
+            saved.append(written)
+        return saved
 
     @property
     def stats(self) -> dict[str, int]:
