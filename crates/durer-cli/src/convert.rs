@@ -12,7 +12,7 @@ use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::asset_export::{AssetFile, sanitize_name};
-use durer::format::course::write;
+use durer::format::course::{self, ReadOptions, write};
 use durer::format::scene::Written;
 use durer::format::{json, mesh_format_for, scene_format_for, scene_writer_for};
 use durer::image::Destination;
@@ -94,6 +94,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         true => json::write(scene, dialect).into_bytes(),
         false => write(scene, dialect).into_bytes(),
     };
+    if !as_json {
+        warn_of_foreign_words(&text(&loaded.scene), dialect);
+    }
     if !loaded.scene.assets.has_in_memory() {
         return output::save(&[(&destination, text(&loaded.scene))], false);
     }
@@ -117,6 +120,17 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     save_with_files(args, destination, Written { bytes, files }, &mut registry)
 }
 
+/// Warns of words in a written scene that its dialect lacks.
+fn warn_of_foreign_words(text: &[u8], dialect: Dialect) {
+    let (compat, mut found) = (dialect.rules().quirks, Diagnostics::default());
+    course::read(text, 0, ReadOptions { dialect, strict: false, compat }, &mut found);
+    let foreign = found.iter().filter(|diagnostic| diagnostic.code == "foreign-word");
+    let warn = |found: &Diagnostic| Diagnostic::warning(found.message.clone()).code("NO_COUNTERPART");
+    let mut warnings = Diagnostics::default();
+    foreign.map(warn).for_each(|warning| warnings.push(warning));
+    report::print(&Files::default(), &warnings, false);
+}
+
 /// Saves a scene and the files beside it: all of them or none.
 fn save_with_files(
     args: &ConvertArgs,
@@ -127,6 +141,7 @@ fn save_with_files(
     let base = args.output.parent().unwrap_or(Path::new(""));
     let folder = written.files.first().and_then(|(path, _)| Path::new(path).parent()).map(|folder| base.join(folder));
     let is_new = folder.as_ref().is_some_and(|folder| !folder.exists());
+    refuse_to_overwrite(args, base, &written)?;
     if let Some(folder) = &folder {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder `{}`", folder.display()))?;
     }
@@ -136,6 +151,27 @@ fn save_with_files(
         std::fs::remove_dir(folder).ok();
     }
     saved
+}
+
+/// Returns an error if a file of the model would replace a file that belongs to another scene.
+fn refuse_to_overwrite(args: &ConvertArgs, base: &Path, written: &Written) -> Result<(), Failure> {
+    let differs = |(path, bytes): &&AssetFile| std::fs::read(base.join(path)).is_ok_and(|old| old != bytes[..]);
+    let Some((path, _)) = written.files.iter().find(differs) else { return Ok(()) };
+    let extension = |name: &Path| name.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let shares_folder = |name: &Path| {
+        let is_scene = extension(name).is_some_and(|it| ["txt", "json", "pbrt", "xml", "usda", "gltf"].contains(&&*it));
+        is_scene && name.file_stem() == args.output.file_stem() && name.file_name() != args.output.file_name()
+    };
+    let around = if base == Path::new("") { Path::new(".") } else { base };
+    let others = std::fs::read_dir(around).into_iter().flatten().flatten().map(|entry| entry.path());
+    if args.output.exists() && !others.into_iter().any(|other| shares_folder(&other)) {
+        return Ok(());
+    }
+    Err(invalid_input(format!(
+        "`{}` exists and has other contents, so it may belong to another scene: choose another name for the output, or \
+         delete that file",
+        base.join(path).display()
+    )))
 }
 
 fn save_all(

@@ -2,6 +2,7 @@
 
 mod luminaire;
 mod polar;
+mod surface;
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -17,6 +18,7 @@ use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use surface::MeshSurface;
 
 /// Print a summary of a scene or of a measured luminaire
 #[derive(Args)]
@@ -53,6 +55,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let dialect = loaded.dialect;
     let count = WorldCounts::of(world);
     let rays = rays(world);
+    let surface = MeshSurface::of(world, count.triangles);
+    let bounds = world.bounds();
     let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
         let scene: serde_json::Value = serde_json::from_str(&durer::format::json::write(&loaded.scene, dialect))?;
@@ -63,6 +67,10 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "distinct_triangles": count.distinct_triangles,
             "materials": world.materials().len(),
             "lights": world.lights().len(),
+            "bounds": (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()]),
+            "open_edges": surface.map(|surface| surface.open_edges),
+            "area": surface.map(|surface| surface.area),
+            "volume": surface.filter(|surface| surface.open_edges == 0).map(|surface| surface.volume),
             "bytes": count.bytes,
             "bytes_per_triangle": count.tree_bytes_each(),
             "tree_cost": count.tree_cost(),
@@ -74,7 +82,6 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         print_line(&serde_json::to_string_pretty(&value)?);
         return Ok(());
     }
-    let bounds = world.bounds();
     let pose = world.camera().pose();
     print_line(&format!("scene      {}", args.scene.display()));
     print_line(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
@@ -97,9 +104,18 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     if count.triangles > 0 {
         print_line(&format!("triangles  {} in meshes, {} of them distinct", count.triangles, count.distinct_triangles));
     }
+    if let Some(surface) = surface {
+        print_line(&format!("surface    {}", surface.text()));
+    }
     print_line(&format!("materials  {}", world.materials().len()));
     if !bounds.is_empty() {
-        print_line(&format!("bounds     {} to {}", bounds.min, bounds.max));
+        // The bounds of a rotated shape are those of its rotated box.
+        let is_loose = world
+            .objects()
+            .iter()
+            .any(|object| object.to_world.is_some() && !matches!(object.geometry, Geometry::Mesh(_)));
+        let most = if is_loose { "at most " } else { "" };
+        print_line(&format!("bounds     {most}{} to {}", bounds.min, bounds.max));
     }
     print_line(&format!(
         "memory     {:.1} MiB: geometry and trees {:.1}, pictures {:.1}",

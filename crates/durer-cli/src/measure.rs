@@ -11,12 +11,13 @@ mod weather;
 
 use crate::failure::{Failure, invalid_input};
 use crate::file_registry::FileRegistry;
-use crate::open::{load_options, open};
+use crate::open::{load_options, read};
 use crate::options::{GivenOptions, IntegratorArgs, SceneArgs, name_of};
 use crate::progress::show_progress;
 use crate::report;
 use crate::terminal::print_error_line;
 use clap::{Arg, Args};
+use durer::camera::PerspectiveCamera;
 use durer::daylight;
 use durer::diag::Diagnostic;
 use durer::image::{Destination, save_all};
@@ -182,7 +183,10 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let listed =
         args.list.as_deref().map(|path| point_list::read(path, &mut registry)).transpose()?.unwrap_or_default();
     let weather = args.weather.weather.as_deref().map(|path| weather::read(path, &mut registry)).transpose()?;
-    let mut compiled = open(&args.scene, &options, args.json, &mut registry)?;
+    let mut parsed = read(&args.scene, &options, args.json, &mut registry)?;
+    // Measuring needs no camera.
+    parsed.loaded.scene.camera.get_or_insert_with(|| PerspectiveCamera::look_at(Vec3::Z, Vec3::ZERO, 40.0).into());
+    let mut compiled = parsed.compile(&options, &mut registry)?;
     let up_axis = compiled.loaded.scene.up.unwrap_or(Axis::Y);
     let up = ModelAxes::new(up_axis).up.as_vec3();
     let lumens = compiled.world.lumens().unwrap_or(LUMINANCE);

@@ -3,6 +3,7 @@
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
+use durer::diag::did_you_mean;
 use std::ffi::OsString;
 
 /// Options of other programs: their names, the option that a command must have for the hint to
@@ -15,14 +16,20 @@ const HINTS: &[(&[&str], &str, &str)] = &[
         "use `--samples 64` for 64 samples per pixel",
     ),
     (&["--format", "--type", "--filetype"], "output", "the file extension selects the format: `-o picture.exr`"),
+    (&["--format", "--type"], "json", "use `--json` for the full output"),
     (&["--out", "--outfile", "-output"], "output", "use `-o picture.png`"),
     (
-        &["--depth", "--max-depth", "--maxdepth", "-bounces"],
+        &["--depth"],
+        "bounces",
+        "use `--bounces 4` for the maximum depth of secondary rays, or `--show depth` for a depth picture",
+    ),
+    (
+        &["--max-depth", "--maxdepth", "-bounces"],
         "bounces",
         "use `--bounces 4` for the maximum depth of secondary rays",
     ),
-    (&["--depth", "-depth"], "show", "use `--show depth --depth-range 8 12` for a depth picture"),
-    (&["-normals"], "show", "use `--show normals` for a picture of the normals"),
+    (&["-depth"], "show", "use `--show depth --depth-range 8 12` for a depth picture"),
+    (&["-normals", "--normals", "--normal"], "show", "use `--show normals` for a picture of the normals"),
     (&["-shadows"], "shadows", "use `--shadows`"),
     (&["-shade_back"], "shade-back", "use `--shade-back`"),
     (&["-weight"], "min-throughput", "use `--min-throughput 0.01`"),
@@ -34,12 +41,55 @@ const HINTS: &[(&[&str], &str, &str)] = &[
         "stats",
         "use `--stats=FILE.json` for the statistics of a render; `durer info --json` describes the scene",
     ),
-    (&["--transparent", "--alpha"], "show", "pictures have no transparency: the camera sees the scene's `Background`"),
+    (&["--transparent", "--alpha"], "background", "use `--background transparent`"),
     (&["--jobs", "--cores"], "threads", "use `--threads 4`"),
+    (&["--hdri", "--hdr", "--env", "--envmap", "--skybox"], "environment", "use `--environment sky.hdr`"),
+    (&["--light", "--lights", "--sun", "--lighting"], "studio", "use `--studio soft`, `sun` or `none`"),
+    (
+        &["--ground", "--no-ground", "--floor"],
+        "studio",
+        "`--studio none` adds neither lights nor a ground, and `--background white` leaves out the ground",
+    ),
+    (&["--rotate", "--yaw", "--orbit", "--angle"], "turned", "use `--turned 45` to orbit the model by 45 degrees"),
+    (
+        &["--lens", "--aperture", "--dof", "--fstop", "--focus"],
+        "eye",
+        "depth of field needs a `ThinLensCamera` in the scene: docs/models.md has the steps",
+    ),
+    (
+        &["--scale", "--unit", "--units"],
+        "eye",
+        "write a scene file with `Transform { UniformScale 1000 TriangleMesh { obj_file model.obj } }`",
+    ),
+    (
+        &["--material", "--color", "--colour"],
+        "eye",
+        "materials belong to the scene: `durer convert model.obj -o model.txt` writes one to edit",
+    ),
+    (&["--wireframe", "--wire"], "show", "use `--show geometric-normals` or `--show barycentric` to see the triangles"),
+    (
+        &["--daylight-factor", "--df"],
+        "at",
+        "divide the illuminance inside by that outside: docs/light.md has the steps",
+    ),
+    (
+        &["--host", "--bind", "--public", "--address", "--listen"],
+        "port",
+        "the page is served to this machine only; from another one, use `ssh -L 8000:127.0.0.1:8000 machine`",
+    ),
+    (&["-o", "--output", "--out"], "points", "results are printed: add `> results.csv`"),
 ];
 
 /// Replaces clap's suggestion for an unknown option with a hint that names the equivalent option.
 pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Error {
+    if error.kind() == ErrorKind::InvalidSubcommand
+        && let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand)
+        && given.contains('.')
+    {
+        let hint = StyledStr::from(format!("use `durer render {given}` to render a file"));
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint]));
+        return error;
+    }
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
@@ -60,10 +110,23 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
             given.strip_prefix('-').is_some_and(|name| argument.get_short().map(String::from).as_deref() == Some(name))
         }
     };
+    let separated = separate_value(&words, &given).or_else(|| negation(&given, command));
     let help = match known {
         Some((_, _, help)) => help.to_string(),
+        None if separated.is_some() => separated.unwrap_or_default(),
         None if render.is_some_and(|render| render.get_arguments().any(is_given)) => {
             format!("`{given}` is an option of `durer render`, which has no meaning for `durer {}`", command.get_name())
+        }
+        None if given.starts_with("--") => {
+            let options = command.get_arguments().filter_map(Arg::get_long);
+            match did_you_mean(&given[2..], options) {
+                Some(near) => format!("did you mean `--{near}`?"),
+                None => format!(
+                    "`durer {} {}` lists the options",
+                    command.get_name(),
+                    if has("help-all") { "--help-all" } else { "--help" }
+                ),
+            }
         }
         None => return error,
     };
@@ -74,4 +137,27 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
     error.insert(ContextKind::InvalidArg, ContextValue::String(given.clone()));
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(format!("{help}{course}"))]));
     error
+}
+
+/// Returns a hint for a word that belongs to the value of the option before it, as in
+/// `--size 640 480` or `--shadows off`.
+fn separate_value(words: &[&str], given: &str) -> Option<String> {
+    let at = words.iter().position(|word| *word == given)?;
+    let first = words[..at].iter().rposition(|word| word.starts_with("--"))?;
+    let option = words[first];
+    let is_number = |word: &&str| word.parse::<f64>().is_ok();
+    if words[first + 1..=at].iter().all(is_number) {
+        let end = words[at..].iter().take_while(|word| is_number(word)).count();
+        let joint = if option == "--size" { "x" } else { "," };
+        return Some(format!("write the numbers as one word: `{option} {}`", words[first + 1..at + end].join(joint)));
+    }
+    (at == first + 1 && matches!(given, "on" | "off")).then(|| format!("use `{option}={given}`"))
+}
+
+/// Returns a hint for the negation of a switch, as in `--no-shadows`.
+fn negation(given: &str, command: &Command) -> Option<String> {
+    let name = given.strip_prefix("--no-")?;
+    let argument = command.get_arguments().find(|argument| argument.get_long() == Some(name))?;
+    let is_switch = argument.get_num_args().is_some_and(|number| number.min_values() == 0);
+    is_switch.then(|| format!("use `--{name}=off`"))
 }

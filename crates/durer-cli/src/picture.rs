@@ -82,6 +82,13 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         shard => shard.unwrap_or(Shard::WHOLE),
     };
     let output = output_of(args);
+    if let Some(Pixel { place: (x, y), .. }) = pixel
+        && args.view.show.iter().any(|name| name != "color")
+    {
+        let message = "`--pixel` prints the colour only";
+        let advice = format!("`durer explain --pixel {x},{y}` prints the distance, the normal and more");
+        return Err(invalid_input(format!("{message}: {advice}")));
+    }
     // Check that the output can be written before starting the work.
     let mut registry = FileRegistry::default();
     let (target, autosave) = match (pixel, args.work.shard) {

@@ -47,12 +47,25 @@ pub enum ViewDirection {
     ThreeQuarter,
     /// From the front, without perspective
     Front,
+    /// From behind, without perspective
+    Back,
+    /// From the left, without perspective
+    Left,
     /// From the right, without perspective
-    Side,
+    #[value(alias = "side")]
+    Right,
     /// From above, without perspective
     Top,
-    /// Isometric: without perspective, with the same scale along all three axes
+    /// From below, without perspective
+    Bottom,
+    /// Isometric, from the upper right front corner: without perspective, with the same scale along
+    /// all three axes
+    #[value(alias = "isometric")]
     Iso,
+    /// Isometric, from the upper left front corner
+    IsoLeft,
+    /// Isometric, from the upper right back corner
+    IsoBack,
 }
 
 /// Lights that are added to a model, as given by `--studio`.
@@ -88,9 +101,14 @@ impl SceneDefaultsArgs {
             view: self.view.map(|view| match view {
                 ViewDirection::ThreeQuarter => PresetView::ThreeQuarter,
                 ViewDirection::Front => PresetView::Front,
-                ViewDirection::Side => PresetView::Side,
+                ViewDirection::Back => PresetView::Back,
+                ViewDirection::Left => PresetView::Left,
+                ViewDirection::Right => PresetView::Right,
                 ViewDirection::Top => PresetView::Top,
+                ViewDirection::Bottom => PresetView::Bottom,
                 ViewDirection::Iso => PresetView::Iso,
+                ViewDirection::IsoLeft => PresetView::IsoLeft,
+                ViewDirection::IsoBack => PresetView::IsoBack,
             }),
             lighting: self.studio.map(|studio| match studio {
                 StudioLight::None => DefaultLighting::None,

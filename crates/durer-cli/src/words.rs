@@ -14,10 +14,14 @@ use topics::{SYNONYMS, example, topic};
 pub struct WordsArgs {
     /// Word of the language, or a term such as `glass` or `area light` [default: list every word
     /// that begins a block]
-    pub word: Option<String>,
+    #[arg(value_name = "WORD")]
+    pub words: Vec<String>,
     /// Show only words of this dialect
     #[arg(long)]
     pub dialect: Option<String>,
+    /// Describe every word with its fields, as a sheet to print
+    #[arg(long, conflicts_with = "words")]
+    pub all: bool,
 }
 
 /// Runs `durer words`.
@@ -25,11 +29,18 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     let dialect = args.dialect.as_deref().map(dialect_by_name).transpose()?;
     let has = |set| dialect.is_none_or(|dialect: Dialect| dialect.is_in(set));
     let all: Vec<Entry> = entries().into_iter().filter(|entry| has(entry.dialects())).collect();
-    let Some(word) = &args.word else {
+    if args.all {
+        all.iter().for_each(|entry| print_line(&format!("{}\n", described(entry))));
+        return Ok(());
+    }
+    if args.words.is_empty() {
         list(&all, dialect);
         return Ok(());
-    };
-    let is = |spelled: &str| spelled.eq_ignore_ascii_case(word);
+    }
+    let word = &args.words.join(" ");
+    // `point light` means `PointLight`.
+    let joined = word.replace([' ', '-'], "");
+    let is = |spelled: &str| spelled.eq_ignore_ascii_case(word) || spelled.eq_ignore_ascii_case(&joined);
     let begun: Vec<&Entry> = all.iter().filter(|entry| entry.keywords.iter().any(|k| has(k.1) && is(k.0))).collect();
     let is_field = |field: &&FieldEntry| field.words.iter().any(|spelled| has(spelled.1) && is(spelled.0));
     let in_blocks: Vec<(&Entry, &FieldEntry)> =
@@ -83,20 +94,24 @@ fn mentions(all: &[Entry], term: &str) -> Vec<String> {
     }
     let synonyms = SYNONYMS.iter().find(|(word, _)| *word == term).map_or(&[][..], |(_, synonyms)| synonyms);
     let terms: Vec<&str> = std::iter::once(term.as_str()).chain(synonyms.iter().copied()).collect();
-    let has = |text: &str| {
+    // In a text, a term is the beginning of a word; in a name such as `AreaLight`, it can also
+    // stand inside.
+    let is_named = |name: &str| terms.iter().any(|term| name.to_lowercase().contains(term));
+    let is_mentioned = |text: &str| {
         let text = text.to_lowercase();
-        terms.iter().any(|term| text.contains(term))
+        let begins = |at: usize| !text[..at].ends_with(char::is_alphanumeric);
+        terms.iter().any(|term| text.match_indices(term).any(|(at, _)| begins(at)))
     };
     let mut rows: Vec<(bool, String, String)> = Vec::new();
     for entry in all {
         let name = entry.keywords[0].0;
-        if has(name) || has(&entry.doc) {
-            rows.push((!has(name), name.into(), first_sentence(&entry.doc).into()));
+        if is_named(name) || is_mentioned(&entry.doc) {
+            rows.push((!is_named(name), name.into(), first_sentence(&entry.doc).into()));
         }
         for field in &entry.fields {
             let Some((word, _)) = field.words.first() else { continue };
-            if has(word) || has(&field.doc) {
-                rows.push((!has(word), format!("{name}: {word}"), first_sentence(&field.doc).into()));
+            if is_named(word) || is_mentioned(&field.doc) {
+                rows.push((!is_named(word), format!("{name}: {word}"), first_sentence(&field.doc).into()));
             }
         }
     }

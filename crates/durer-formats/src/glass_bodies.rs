@@ -78,7 +78,7 @@ pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
         let Some(material) = object.material.filter(|&number| is_glass(number)) else { continue };
         let Some(data) = mesh_of(object).and_then(|(name, _)| meshes.get(name)) else { continue };
         let mesh = Mesh::new(Arc::clone(data), MeshNormals::Flat, true);
-        if mesh.open_edge().is_some() {
+        if !mesh.open_edges().is_empty() {
             skins.entry(material).or_default().push(i);
         }
     }

@@ -74,12 +74,16 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
     }
     let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
     let message = format!("`{last}` is {what}, according to its first bytes");
-    let error = Diagnostic::error(message).code("bad-file").at(Span {
-        file,
-        start: 0,
-        end: start.trim_ascii_end().len() as u32,
-    });
+    let error = Diagnostic::error(message).code("bad-file");
+    // A line of binary data shows nothing.
+    let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    let is_text = line.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    let span = Span { file, start: 0, end: start.trim_ascii_end().len() as u32 };
+    let error = if is_text { error.at(span) } else { error };
     Some(error.help(match (own, what.starts_with("a picture")) {
+        (Some(own), _) if last.to_lowercase().ends_with(&format!(".{own}")) => {
+            format!("convert the file: `durer convert {last} -o {stem}.ply` for a mesh, or `-o {stem}.txt` for a scene")
+        }
         (Some(own), _) => format!("rename the file to `{stem}.{own}`"),
         (None, _) if *what == LUMINAIRE => {
             format!("use the file in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")

@@ -7,7 +7,7 @@ use durer_diag::{format_bytes_down, format_bytes_up};
 #[non_exhaustive]
 pub enum ImageError {
     /// The file name has an unknown extension.
-    #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.similar))]
+    #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.path, .similar))]
     UnknownExtension {
         /// The file name with the unknown extension.
         path: String,
@@ -108,7 +108,11 @@ pub enum ImageError {
     },
 }
 
-fn suggestion(similar: &Option<&'static str>) -> String {
+fn suggestion(path: &str, similar: &Option<&'static str>) -> String {
+    let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
+    if ["gif", "mp4", "webm", "avi", "mov", "mkv", "apng"].contains(&&*extension) {
+        return "; videos are made of numbered pictures such as frame.%04d.png, for example by ffmpeg".into();
+    }
     similar.map(|similar| format!("; did you mean `.{similar}`?")).unwrap_or_default()
 }
 

@@ -72,7 +72,7 @@ fn camera_rows(world: &World, job: &Job, place: Vec2) -> Vec<FormulaRow> {
         let (x, y) = (f64::from(point.x), f64::from(point.y));
         let numbers =
             format!("{} {} + {} {} + {} {}", number(distance), vector(w), factor(x), vector(u), factor(y), vector(v));
-        rows.push(vector_row("d", "D w + x u + y v, normalised", numbers, distance * w + x * u + y * v));
+        rows.push(vector_row("d", "D w + x u + y v", numbers, distance * w + x * u + y * v));
     }
     rows
 }

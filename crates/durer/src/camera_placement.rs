@@ -3,6 +3,8 @@
 use durer_render::world::World;
 use durer_scene::camera::{Camera, PerspectiveCamera, Projection};
 use durer_scene::math::Vec3;
+use durer_scene::scene::Axis;
+use durer_scene::scene::defaults::ModelAxes;
 
 /// Eye, target and field of view that replace those of the scene's camera. If any is given, the
 /// scene is rendered with a perspective camera.
@@ -19,12 +21,13 @@ pub struct CameraPlacement {
 }
 
 impl CameraPlacement {
-    /// Places the camera of a world.
+    /// Places the camera of a world. `up` is the up axis of a model. A moved or turned camera keeps
+    /// it upright in the picture; without it, the camera keeps its own up direction.
     ///
     /// # Errors
     ///
     /// Returns a message if the eye is at the target.
-    pub(crate) fn apply(&self, world: &mut World) -> Result<(), String> {
+    pub(crate) fn apply(&self, world: &mut World, up: Option<Axis>) -> Result<(), String> {
         if *self == CameraPlacement::default() {
             return Ok(());
         }
@@ -40,9 +43,12 @@ impl CameraPlacement {
         if !direction.length_squared().is_normal() {
             return Err("the camera cannot look at the point where it is: choose another `--eye` or `--target`".into());
         }
+        let is_moved = self.eye.is_some() || self.target.is_some();
+        let upright = up.filter(|_| is_moved).map(|up| ModelAxes::new(up).up.as_vec3());
+        let up = upright.unwrap_or(pose.up);
         // A camera that looks along its up direction needs another one.
-        let is_along = direction.normalize().cross(pose.up.normalize_or(Vec3::Y)).length() < 1e-3;
-        let up = if is_along { pose.up.any_orthogonal_vector() } else { pose.up };
+        let is_along = direction.normalize().cross(up.normalize_or(Vec3::Y)).length() < 1e-3;
+        let up = if is_along { up.any_orthogonal_vector() } else { up };
         let camera = PerspectiveCamera { center: eye, direction, up, angle: self.fov.unwrap_or(usual) };
         world.set_camera(camera.into());
         Ok(())

@@ -302,7 +302,7 @@ impl LoadedScene {
             None => work(),
         }?;
         let refuse = |problem| diagnostics.push(Diagnostic::error(problem).code("bad-value"));
-        options.placement.apply(&mut world).map_err(refuse).ok()?;
+        options.placement.apply(&mut world, self.scene.up).map_err(refuse).ok()?;
         Some(world)
     }
 }

@@ -10,8 +10,8 @@ use std::path::Path;
 /// Maximum size of a list, in bytes.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// Reads lines with `x,y,z` or `x,y,z,nx,ny,nz`. A first line with names is skipped, and so are
-/// empty lines and lines that begin with `#`.
+/// Reads lines with `x,y,z` or `x,y,z,nx,ny,nz`, separated by commas, semicolons or blanks. A first
+/// line with names is skipped, and so are empty lines and lines that begin with `#`.
 pub fn read(path: &Path, registry: &mut FileRegistry) -> Result<Vec<(Vec3, Option<Vec3>)>, Failure> {
     registry.register_input(path)?;
     let name = path.display().to_string();
@@ -21,16 +21,19 @@ pub fn read(path: &Path, registry: &mut FileRegistry) -> Result<Vec<(Vec3, Optio
 }
 
 fn parse(text: &str) -> Result<Vec<(Vec3, Option<Vec3>)>, String> {
-    let mut points = Vec::new();
+    let (mut points, mut is_first) = (Vec::new(), true);
     for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let words: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
+        let words: Vec<&str> = match line.contains([',', ';', '\t']) {
+            true => line.split([',', ';', '\t']).map(str::trim).collect(),
+            false => line.split_whitespace().collect(),
+        };
         let numbers: Option<Vec<f32>> =
             words.iter().map(|word| word.parse().ok().filter(|number: &f32| number.is_finite())).collect();
-        let is_heading = points.is_empty() && words.iter().all(|word| word.parse::<f32>().is_err());
+        let is_heading = std::mem::take(&mut is_first) && words.iter().all(|word| word.parse::<f32>().is_err());
         match numbers.as_deref() {
             Some([x, y, z]) => points.push((Vec3::new(*x, *y, *z), None)),
             Some([x, y, z, a, b, c]) => match Vec3::new(*a, *b, *c).try_normalize() {
@@ -53,7 +56,10 @@ mod tests {
     fn lists_of_points() {
         let list = parse("\u{feff}x;y;z\r\n1;2;3\n\n# desk\n0, 0.5, -1, 0, 0, 2\n").unwrap();
         assert_eq!(list, [(Vec3::new(1.0, 2.0, 3.0), None), (Vec3::new(0.0, 0.5, -1.0), Some(Vec3::Z))]);
+        let rtrace = parse("2 2 0.8  0 0 1\n2 2 0.9 0 0 1\n").unwrap();
+        assert_eq!(rtrace[1], (Vec3::new(2.0, 2.0, 0.9), Some(Vec3::Z)));
         for (text, error) in [
+            ("x,y,z\nsome words", "2:1: expected x,y,z or x,y,z,nx,ny,nz, found `some words`"),
             ("", "1:1: the list has no points"),
             ("1,2,3\n1,2", "2:1: expected x,y,z or x,y,z,nx,ny,nz, found `1,2`"),
             ("1,2,x", "1:1: expected x,y,z"),

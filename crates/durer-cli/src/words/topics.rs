@@ -26,6 +26,8 @@ pub const SYNONYMS: &[(&str, &[&str])] = &[
     ("model", &["mesh"]),
     ("transparency", &["transparent", "opacity"]),
     ("bump", &["bump", "normal map"]),
+    ("cube", &["box"]),
+    ("cuboid", &["box"]),
     ("size", &["size", "scale"]),
 ];
 
@@ -52,7 +54,7 @@ const TOPICS: &[(&[&str], &str)] = &[
     (&["ugr", "glare"], "`durer measure --ugr EYE:TARGET` rates the glare of luminaires for an observer"),
     (
         &["transparent background", "alpha", "alpha channel"],
-        "pictures have no transparency, and the camera sees the scene's `Background`",
+        "`durer render --background transparent` makes the picture transparent where the camera sees no object",
     ),
     (
         &["statistics", "stats", "timings", "ray counts"],

@@ -74,7 +74,7 @@ fn models_converted_to_text_render_the_same_picture() {
             std::fs::read(folder.path("a.ppm")).unwrap()
         };
         let first = picture(&model.display().to_string());
-        for written in ["m.txt", "m.json"] {
+        for written in ["text.txt", "tree.json"] {
             folder.expect_exit(0, &format!("convert {} -o {written}", model.display()));
             assert!(picture(written) == first, "{name} as {written}");
         }

@@ -644,3 +644,11 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
     // If there is no background, the message must not suggest turning it off.
     assert!(!output("").contains("`Background { color 0 0 0 }`"), "{}", output(""));
 }
+
+#[test]
+fn measuring_needs_no_camera() {
+    let folder = TestFolder::new();
+    folder.write("point.txt", "Lights { PointLight { position 0 2 0 color 1 1 1 candela 100 } }\nBackground { color 0 0 0 }\nGroup { Plane { normal 0 1 0 offset 0 } }");
+    let output = folder.expect_exit(0, "measure point.txt --at 0,0,0").out;
+    assert!(output.contains("0,0,0,0,1,0,25.000000"), "{output}");
+}

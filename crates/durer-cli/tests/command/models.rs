@@ -278,3 +278,39 @@ fn json_scene_works_with_every_command() {
     folder.write("b", text);
     folder.expect_failure(2, "render b -o b.png", &["b:2:21"]);
 }
+
+#[test]
+fn moved_camera_keeps_the_model_upright() {
+    let folder = TestFolder::new();
+    let corners = [[-1.0f32, -2.0, 0.0], [1.0, -2.0, 0.0], [0.0, 2.0, 0.0]];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    use base64::Engine as _;
+    let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+    // The file's own camera is rolled by 90 degrees.
+    folder.write(
+        "rolled.gltf",
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],
+        "nodes":[{{"mesh":0}},{{"camera":0,"translation":[0,0,9],"rotation":[0,0,0.70710678,0.70710678]}}],
+        "cameras":[{{"type":"perspective","perspective":{{"yfov":0.6,"znear":0.1}}}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,-2,0],"max":[1,2,0]}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{data}"}}]}}"#
+        ),
+    );
+    // The triangle is taller than wide.
+    let sides = |options: &str| {
+        folder
+            .expect_exit(0, &format!("render rolled.gltf --size 40x40 --studio none --show depth -o d.pfm {options}"));
+        let image = folder.image("d.pfm");
+        let hit = |x: u32, y: u32| image.pixels[(y * 40 + x) as usize].x > 0.0;
+        let columns = (0..40).filter(|&x| (0..40).any(|y| hit(x, y))).count();
+        let rows = (0..40).filter(|&y| (0..40).any(|x| hit(x, y))).count();
+        (columns, rows)
+    };
+    let (columns, rows) = sides("");
+    assert!(columns > rows, "{columns} {rows}");
+    let (columns, rows) = sides("--eye 0,0,9");
+    assert!(columns < rows, "{columns} {rows}");
+}

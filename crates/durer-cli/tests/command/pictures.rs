@@ -71,11 +71,15 @@ fn background_is_transparent_or_a_color() {
     folder.expect_exit(0, &format!("{render} 0,0.25,1 -o blue.pfm"));
     let blue = folder.image("blue.pfm");
     assert_eq!(blue.get(0, 0).unwrap().to_array(), [0.0, 0.25, 1.0]);
+    for (name, shown) in [("white", [255; 3]), ("black", [0; 3]), ("#ffcc00", [255, 204, 0])] {
+        folder.expect_exit(0, &format!("{render} {name} -o named.png"));
+        assert_eq!(folder.image8("named.png").pixels[0], shown, "{name}");
+    }
     let refused = folder.expect_exit(2, &format!("{render} transparent -o open.jpg"));
     assert!(refused.err.contains("JPEG files cannot be transparent: write a PNG"), "{}", refused.err);
-    for wrong in ["1,1", "-1,0,0", "white", "nan,0,0"] {
+    for wrong in ["1,1", "-1,0,0", "whit", "#ffcc0", "nan,0,0"] {
         let refused = folder.expect_exit(2, &format!("{render}={wrong} -o open.png"));
-        assert!(refused.err.contains("`transparent`, or red, green and blue"), "{}", refused.err);
+        assert!(refused.err.contains("or red, green and blue"), "{}", refused.err);
     }
     folder.write("fog.txt", format!("{SCENE}\nFog {{ extinction 0.1 }}"));
     let refused = folder.expect_exit(2, "render fog.txt --dialect durer --background 1,1,1 -o fog.png");

@@ -232,6 +232,15 @@ fn options_of_other_programs_are_pointed_to_ours() {
         ("--spp 64", "`--samples 64`", false),
         ("--verbose", "`--stats`", false),
         ("-size 200 200", "`--size 640x480`", true),
+        ("--size 200 100", "`--size 200x100`", false),
+        ("--pixel 3 4", "`--pixel 3,4`", false),
+        ("--shadows off", "`--shadows=off`", false),
+        ("--no-shadows", "`--shadows=off`", false),
+        ("--depth", "`--show depth`", false),
+        ("--normals n.png", "`--show normals`", false),
+        ("--transparent", "`--background transparent`", false),
+        ("--sampels 4", "`--samples`", false),
+        ("--quaternion 4", "`durer render --help-all`", false),
     ] {
         let output = folder.expect_exit(2, &format!("render scene.txt -o x.png {options}"));
         assert!(output.err.contains("unexpected argument") && output.err.contains(words), "{}", output.err);
@@ -241,6 +250,12 @@ fn options_of_other_programs_are_pointed_to_ours() {
     let output = folder.expect_exit(2, "check scene.txt --verbose");
     assert!(output.err.contains("use `--json` for the full output"), "{}", output.err);
     assert!(!output.err.contains("--stats"), "{}", output.err);
+    let output = folder.expect_exit(2, "scene.txt -o x.png");
+    assert!(output.err.contains("use `durer render scene.txt`"), "{}", output.err);
+    let output = folder.expect_exit(2, "measure scene.txt --at 2 0.8 3");
+    assert!(output.err.contains("`--at 2,0.8,3`"), "{}", output.err);
+    let output = folder.expect_exit(2, "render scene.txt --pixel 3,4 --show depth");
+    assert!(output.err.contains("`durer explain --pixel 3,4`"), "{}", output.err);
 }
 
 /// Options that do not apply are refused instead of ignored.

@@ -37,6 +37,23 @@ fn manual_completions_and_dialects() {
 }
 
 #[test]
+fn words_are_found_as_people_write_them() {
+    let folder = TestFolder::new();
+    for (asked, found) in [
+        ("point light", "PointLight ("),
+        ("spot-light", "SpotLight"),
+        ("cube", "\n  Box "),
+        ("IES", "ies"),
+        ("--all --dialect f04", "PhongMaterial"),
+    ] {
+        let output = folder.expect_exit(0, &format!("words {asked}")).out;
+        assert!(output.contains(found), "{asked}: {output}");
+        assert!(!output.contains("multiplies"), "{asked}: {output}");
+    }
+    assert!(!folder.expect_exit(0, "words --all --dialect f04").out.contains("\nPrincipledMaterial"));
+}
+
+#[test]
 fn info_as_text_and_json() {
     let folder = TestFolder::new();
     let text = folder.expect_exit(0, "info scene.txt").out;
@@ -128,7 +145,7 @@ fn terms_lead_to_words() {
         ("supersampling", "--samples 64"),
         ("antialiasing", "--samples 64"),
         ("daylight factor", "docs/light.md"),
-        ("transparent background", "`Background`"),
+        ("transparent background", "--background transparent"),
         ("UGR", "--ugr EYE:TARGET"),
         ("statistics", "--stats=FILE.json"),
         ("glass", "PrincipledMaterial { preset glass }"),
@@ -183,4 +200,45 @@ fn info_of_a_luminaire() {
     folder.write("broken.ies", file.replace("TILT=NONE", ""));
     folder.expect_failure(2, "info broken.ies", &["broken.ies:1:1", "TILT="]);
     folder.expect_failure(2, "info panel.ies --polar panel.ies", &["panel.ies"]);
+}
+
+#[test]
+fn conversion_does_not_touch_files_of_other_scenes() {
+    let folder = TestFolder::new();
+    folder.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("two.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n");
+    folder.expect_exit(0, "convert one.obj -o d.usda");
+    folder.expect_exit(0, "convert one.obj -o d.xml");
+    let names = std::fs::read_dir(folder.path("d")).unwrap().map(|entry| entry.unwrap().path());
+    let before: Vec<_> = names.map(|path| (std::fs::read(&path).unwrap(), path)).collect();
+    folder.expect_failure(2, "convert two.obj -o d.xml", &["d/", "may belong to another scene"]);
+    assert!(before.iter().all(|(bytes, path)| std::fs::read(path).unwrap() == *bytes));
+    std::fs::remove_file(folder.path("d.usda")).unwrap();
+    folder.expect_exit(0, "convert two.obj -o d.xml");
+}
+
+#[test]
+fn conversion_warns_of_words_that_the_dialect_lacks() {
+    let folder = TestFolder::new();
+    folder.write(
+        "torus.txt",
+        SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "Torus { center 0 0 0 majorRadius 1 minorRadius 0.2 }"),
+    );
+    let output = folder.expect_exit(0, "convert torus.txt -o old.txt --to f04");
+    assert!(output.err.contains("`Torus` is not a word of f04"), "{}", output.err);
+    assert!(!folder.expect_exit(0, "convert scene.txt -o same.txt --to f04").err.contains("NO_COUNTERPART"));
+}
+
+#[test]
+fn info_measures_the_surface_of_meshes() {
+    let folder = TestFolder::new();
+    folder.write("open.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert!(folder.expect_exit(0, "info open.obj").out.contains("surface    open at 3 edges, area 1"));
+    let corners = "v 0 0 0\nv 6 0 0\nv 0 1 0\nv 0 0 1\n";
+    folder.write("closed.obj", format!("{corners}f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+    let output = folder.expect_exit(0, "info closed.obj").out;
+    assert!(output.contains("surface    closed, area") && output.contains("volume 1\n"), "{output}");
+    let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info closed.obj --json").out).unwrap();
+    assert_eq!((json["volume"].as_f64(), json["open_edges"].as_u64()), (Some(1.0), Some(0)));
+    assert_eq!(json["bounds"], serde_json::json!([[0.0, 0.0, 0.0], [6.0, 1.0, 1.0]]));
 }

@@ -2,7 +2,7 @@
 
 use super::lexer::{TokenKind, tokens};
 use super::words::{dialects_of, is_reserved};
-use durer_diag::{Diagnostic, Span};
+use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 
 /// Evidence for the dialect of a scene that comes from outside the file, such as an option. A hint
@@ -110,11 +110,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::F12A5, "the cube map has BMP files".into())
         } else if named && matches!(&*word, "include" | "define" | "use") {
             (set::DURER, format!("`{word}` is a Dürer extension"))
-        } else if named
-            && at(i + 2) == Some(TokenKind::Open)
-            && word.ends_with("Material")
-            && !is_reserved(&text(i + 1))
-        {
+        } else if named && at(i + 2) == Some(TokenKind::Open) && is_material(&word) && !is_reserved(&text(i + 1)) {
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_distinctive(&word),
@@ -188,4 +184,9 @@ fn names(set: DialectSet) -> String {
 /// not proof, because they may be file names.
 fn is_distinctive(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
+}
+
+/// Returns true if a word begins a material, perhaps with a typing error.
+fn is_material(word: &str) -> bool {
+    word.ends_with("Material") || did_you_mean(word, ["PhongMaterial", "PrincipledMaterial", "HairMaterial"]).is_some()
 }

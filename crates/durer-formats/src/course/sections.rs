@@ -4,6 +4,7 @@ use super::fields::Order;
 use super::lexer::TokenKind;
 use super::reader::Reader;
 use super::words::{DURER_SECTIONS, SECTIONS, block_of, camera_of, is_section};
+use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::{DescribedKind, FileName};
@@ -352,6 +353,15 @@ impl Reader<'_, '_> {
                     false
                 }
                 // In the dialect of 2003, materials are defined where they are used.
+                "Material" | "PhongMaterial" if !reader.at_open() && reader.peek_word().is_some() => {
+                    let found = reader.peek_word().unwrap_or_default();
+                    let message = format!("`{word}` needs `{{`, but found {}", quoted(found.as_bytes()));
+                    let help = format!("`MaterialIndex {found}` selects a material that is defined above");
+                    let error = Diagnostic::error(message).code("syntax").at(span).help(help);
+                    reader.error(error.fix(span, "MaterialIndex"));
+                    reader.advance();
+                    false
+                }
                 "Material" | "PhongMaterial" => {
                     reader.report_foreign_word("Material in Group", span, set::F03);
                     if let Some(value) = reader.material(word, span) {

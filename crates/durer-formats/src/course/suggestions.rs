@@ -29,9 +29,16 @@ const COUNTERPARTS: [(&str, &str); 20] = [
 
 /// Common mistakes. Each entry has the wrong word, the words that may have been intended, and a
 /// remark. The first of the intended words that is valid in the block is suggested.
-const COMMON_MISTAKES: [(&str, &[&str], &str); 52] = [
+const COMMON_MISTAKES: [(&str, &[&str], &str); 59] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
+    ("cube", &["Box"], ""),
+    ("cuboid", &["Box"], ""),
+    ("disk", &["Disc"], ""),
+    ("donut", &["Torus"], ""),
+    ("subtract", &["Difference"], ""),
+    ("subtraction", &["Difference"], ""),
+    ("minus", &["Difference"], ""),
     ("mesh", &["TriangleMesh"], ""),
     ("model", &["TriangleMesh", "mesh"], ""),
     ("file", &["obj_file"], ""),
@@ -128,6 +135,10 @@ pub(super) fn common_mistake<'w>(
     (*suggestion != word).then_some((suggestion, row.2))
 }
 
+/// Objects for which people write a field for the material.
+const SHAPES: [&str; 9] =
+    ["Sphere", "Plane", "Triangle", "TriangleMesh", "Box", "Cylinder", "Cone", "Torus", "Rectangle"];
+
 /// Returns a remark about a word that exists in the language, but that is not allowed in this
 /// block.
 pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
@@ -139,6 +150,10 @@ pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
         "direction" if within("PointLight") || within("point") => {
             "a point light has a `position` and shines in all directions; a `DirectionalLight` has a `direction`"
         }
+        "material" | "Material" if SHAPES.contains(&place) => {
+            "the material is selected before the object: `MaterialIndex red Sphere { ... }`"
+        }
+        "name" if within("Material") => "the name stands before the block: `PhongMaterial red { ... }`",
         "position" if within("Camera") => "the position of a camera is its `center`",
         "position" => "the position of a sphere is its `center`",
         "color" if within("PrincipledMaterial") => "the colour of this material is its `baseColor`",

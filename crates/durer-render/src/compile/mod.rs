@@ -124,7 +124,7 @@ pub fn compile(
             flattener.diagnostics.push(warning.code("no-objects"));
         }
     }
-    flattener.warn_without_material();
+    flattener.warn_without_material(scene);
     let SceneFlattener { objects, plain_needed, .. } = flattener;
     let mut compiled = materials;
     if plain_needed {
@@ -416,7 +416,7 @@ struct SceneFlattener<'a, 'r> {
 
 impl SceneFlattener<'_, '_> {
     /// Reports a single warning for all objects without a material.
-    fn warn_without_material(&mut self) {
+    fn warn_without_material(&mut self, scene: &Scene) {
         let Some((span, count)) = self.without_material else { return };
         let mut message = "this object has no material and is rendered in plain grey".to_string();
         match count {
@@ -425,9 +425,11 @@ impl SceneFlattener<'_, '_> {
             n => message += &format!("; {} other objects have no material either", n - 1),
         }
         let warning = Diagnostic::warning(message).code("no-material").at(span);
-        self.diagnostics.push(warning.help(match rules::is_nodes(self.rules) {
-            true => "write `Component<Material> { index 0 }` into the object's node",
-            false => "write `MaterialIndex 0` before the object",
+        let has_materials = !scene.materials.is_empty();
+        self.diagnostics.push(warning.help(match (rules::is_nodes(self.rules), has_materials) {
+            (true, _) => "write `Component<Material> { index 0 }` into the object's node",
+            (false, true) => "write `MaterialIndex 0` before the object",
+            (false, false) => "add a `Materials { ... }` block, and write `MaterialIndex 0` before the object",
         }));
     }
 

@@ -128,7 +128,7 @@ impl SceneFlattener<'_, '_> {
     /// Reports a mesh that is not closed.
     fn check_mesh(&mut self, object: &Object, path: &str, span: Span) {
         let Geometry::Mesh(tree) = &object.geometry else { return };
-        let edge = *self.open_edges.entry(path.to_string()).or_insert_with(|| tree.mesh.open_edge());
+        let edge = *self.open_edges.entry(path.to_string()).or_insert_with(|| tree.mesh.open_edges().first().copied());
         if let Some([p, q]) = edge {
             let message = format!("the mesh `{path}` is not closed and cannot be part of a solid");
             let text = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);

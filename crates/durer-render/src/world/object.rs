@@ -77,7 +77,7 @@ impl MeshTree {
 
     /// Returns true if the mesh is closed and therefore has an inside.
     pub fn is_closed(&self) -> bool {
-        *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
+        *self.closed.get_or_init(|| self.mesh.open_edges().is_empty())
     }
 
     /// Calls `offer` for each point where a line crosses the mesh, in no particular order, and

@@ -28,7 +28,7 @@ described! {
         /// 0 for no glass.
         refraction_index: Option<f32> = None, optional, Constraint::NonNegative,
             ["refractionIndex" in set::F12A5 | set::DURER];
-        /// Texture that replaces the diffuse colour on meshes with texture coordinates.
+        /// Texture that replaces the diffuse colour where the object has texture coordinates.
         texture: Option<FileName> = None, optional, Constraint::Any, ["texture" in set::F12A4 | set::F12A5 | set::DURER];
         /// Bump map; ignored, as it is by the official programs of every year.
         bump: Option<FileName> = None, optional, Constraint::Any, ["bump" in set::NEW | set::DURER];

@@ -31,12 +31,23 @@ pub enum PresetView {
     ThreeQuarter,
     /// Parallel view from the front.
     Front,
+    /// Parallel view from behind.
+    Back,
+    /// Parallel view from the left.
+    Left,
     /// Parallel view from the right.
-    Side,
+    Right,
     /// Parallel view from above.
     Top,
-    /// Parallel view in which edges along all three axes have equal lengths.
+    /// Parallel view from below.
+    Bottom,
+    /// Parallel view from the upper right front corner, in which edges along all three axes have
+    /// equal lengths.
     Iso,
+    /// The view of `Iso` from the upper left front corner.
+    IsoLeft,
+    /// The view of `Iso` from the upper right back corner.
+    IsoBack,
 }
 
 /// Preset lighting for models without lights.
@@ -168,9 +179,14 @@ impl SceneDefaults {
             // The camera is 35 degrees to the right and 22 degrees above.
             PresetView::ThreeQuarter => (0.927 * (0.819 * front + 0.574 * right) + 0.375 * up, up),
             PresetView::Front => (front, up),
-            PresetView::Side => (right, up),
+            PresetView::Back => (-front, up),
+            PresetView::Left => (-right, up),
+            PresetView::Right => (right, up),
             PresetView::Top => (up, -front),
+            PresetView::Bottom => (-up, front),
             PresetView::Iso => (front + right + up, up),
+            PresetView::IsoLeft => (front - right + up, up),
+            PresetView::IsoBack => (right - front + up, up),
         };
         self.framing_camera(scene, sides, (back, above), view == PresetView::ThreeQuarter)
     }

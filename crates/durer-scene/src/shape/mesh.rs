@@ -242,12 +242,14 @@ impl Mesh {
         own + made.map_or(0, Normals::bytes)
     }
 
-    /// Returns an edge that is shared by an odd number of triangles, or `None` if there is no such
-    /// edge. In a mesh without such an edge, every line crosses the surface an even number of
-    /// times. Corners at the same position count as one corner.
-    pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+    /// Returns the edges that are shared by an odd number of triangles. In a mesh without such
+    /// edges, every line crosses the surface an even number of times. Corners at the same position
+    /// count as one corner.
+    pub fn open_edges(&self) -> Vec<[Vec3; 2]> {
         // A height field with walls and a floor is always closed.
-        self.lists()?;
+        if self.lists().is_none() {
+            return Vec::new();
+        }
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for triangle in 0..self.len() as u32 {
             let [a, b, c] = self.corners(triangle);
@@ -259,7 +261,7 @@ impl Mesh {
             }
         }
         edges.sort_unstable_by_key(|edge| edge.0);
-        edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
+        edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() % 2 == 1).map(|same| same[0].1).collect()
     }
 
     /// Returns the corners of a triangle.

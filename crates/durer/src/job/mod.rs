@@ -154,11 +154,11 @@ options! {
         /// Take more samples in noisy pixels and fewer in others: a quarter of --samples measures
         /// the noise, and the rest are distributed accordingly
         adaptive: bool = "adaptive", OptionForm::Flag;
-        /// Show something else where the camera sees no object: `transparent`, or a colour as
-        /// linear light, for example 1,1,1 for white. Lighting, reflections and refractions do not
-        /// change. A model without a camera then gets no ground [default: the background of the
-        /// scene]
-        background: Backdrop = "background", OptionForm::Value("transparent|R,G,B");
+        /// Show something else where the camera sees no object: `transparent`, `white`, `black`, an
+        /// sRGB colour such as #ffcc00, or a colour as linear light, for example 0.5,0.5,0.5.
+        /// Lighting, reflections and refractions do not change. A model without a camera then gets
+        /// no ground [default: the background of the scene]
+        background: Backdrop = "background", OptionForm::Value("transparent|COLOR");
         /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");
     }

@@ -1,8 +1,9 @@
 //! Forms of option values, which define how their text is checked, parsed and printed.
 
 use durer_diag::did_you_mean;
+use durer_image::decode_srgb;
 use durer_render::render::Backdrop;
-use durer_scene::math::Vec3;
+use durer_scene::math::{Color, Vec3};
 
 /// Form of the value of an option, such as a flag, a number in a range, or one of several words.
 #[derive(Clone, Copy, Debug)]
@@ -120,15 +121,28 @@ impl OptionValue for (u32, u32) {
     }
 }
 
+/// Returns the linear colour of an sRGB colour in the form `#rrggbb`.
+fn hexadecimal(text: &str) -> Option<Color> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
+    let number = u32::from_str_radix(digits, 16).ok()?;
+    let [_, r, g, b] = number.to_be_bytes();
+    Some(Color::from([r, g, b].map(decode_srgb)))
+}
+
 /// Background that the camera sees.
 impl OptionValue for Backdrop {
     fn parse(text: &str) -> Result<Self, String> {
         if text == "transparent" {
             return Ok(Backdrop::Transparent);
         }
-        let color = three_numbers(text).filter(|color| color.min_element() >= 0.0);
-        let color = color.ok_or("expected `transparent`, or red, green and blue from 0, for example 1,1,1")?;
-        Ok(Backdrop::Color(color))
+        let color = match text {
+            "white" => Some(Color::ONE),
+            "black" => Some(Color::ZERO),
+            _ => hexadecimal(text).or_else(|| three_numbers(text).filter(|color| color.min_element() >= 0.0)),
+        };
+        let expected = "expected `transparent`, `white`, `black`, an sRGB colour such as #ffcc00, or red, green and blue as \
+                        linear light, for example 0.5,0.5,0.5";
+        Ok(Backdrop::Color(color.ok_or(expected)?))
     }
     fn to_text(&self) -> String {
         match self {

@@ -102,7 +102,7 @@ pub(super) const LOADING: &[Row] = &[
             });
             Ok(())
         },
-        "Axis of the model that points up [default: y; z for Radiance and STL]",
+        "Axis of the model that points up [default: y; z for Radiance, 3MF and STL]",
     ),
     row(
         "view",
@@ -250,12 +250,18 @@ pub(super) const EXECUTION: &[Row] = &[
 ];
 
 /// Names of the views in which a model can be rendered.
-const VIEWS: [(&str, PresetView); 5] = [
+const VIEWS: [(&str, PresetView); 11] = [
     ("three-quarter", PresetView::ThreeQuarter),
     ("front", PresetView::Front),
-    ("side", PresetView::Side),
+    ("back", PresetView::Back),
+    ("left", PresetView::Left),
+    ("right", PresetView::Right),
+    ("side", PresetView::Right),
     ("top", PresetView::Top),
+    ("bottom", PresetView::Bottom),
     ("iso", PresetView::Iso),
+    ("iso-left", PresetView::IsoLeft),
+    ("iso-back", PresetView::IsoBack),
 ];
 
 /// Names of the light setups for models.

@@ -114,6 +114,11 @@ impl Writer<'_> {
                     let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), rough.facets);
                     let fades = *darkens && base.picture.is_none();
                     paint.color = base.color.map(|color| boundary.color(color, fades));
+                    // Rough plastic of Mitsuba loses light between its facets. A colour above 1 cannot
+                    // make up for that, but Disney's material loses none.
+                    if paint.color.max_element() > 1.0 + 1e-3 {
+                        return self.disney(base, *ior, *specular, rough);
+                    }
                 }
                 let plastic = self.rough(Element::plugin("bsdf", kind), rough, false);
                 let plastic = plastic.float("int_ior", ior).float("ext_ior", 1).boolean("nonlinear", *darkens);
@@ -122,6 +127,24 @@ impl Writer<'_> {
                 self.paint(plastic, "diffuse_reflectance", &paint)
             }
         }
+    }
+
+    /// Returns an opaque dielectric with the layers of Disney's material.
+    fn disney(&mut self, base: &Paint, ior: f32, specular: Vec3, rough: &Rough) -> Element {
+        if specular != Vec3::ONE {
+            self.export.warn_lost("`principled` of Mitsuba has no colour of its highlights: they are white");
+        }
+        let roughness = (rough.alpha[0] * rough.alpha[1]).sqrt().sqrt();
+        let element = Element::plugin("bsdf", "principled").float("eta", ior);
+        let file = rough.picture.as_ref().and_then(|picture| {
+            let what = format!("roughness-{roughness}");
+            Some((self.export.number_file(picture, &what, |x| roughness * x)?, picture.mapping))
+        });
+        let element = match file {
+            Some((file, mapping)) => element.and(self.bitmap("roughness", &file, &mapping)),
+            None => element.float("roughness", roughness),
+        };
+        self.paint(element, "base_color", base)
     }
 
     fn metal(

@@ -10,8 +10,18 @@ use crate::scene::MatrixOp;
 use crate::shape::{MeshData, TriangleMesh};
 use std::sync::Arc;
 
-const VIEWS: [PresetView; 5] =
-    [PresetView::ThreeQuarter, PresetView::Front, PresetView::Side, PresetView::Top, PresetView::Iso];
+const VIEWS: [PresetView; 10] = [
+    PresetView::ThreeQuarter,
+    PresetView::Front,
+    PresetView::Back,
+    PresetView::Left,
+    PresetView::Right,
+    PresetView::Top,
+    PresetView::Bottom,
+    PresetView::Iso,
+    PresetView::IsoLeft,
+    PresetView::IsoBack,
+];
 
 /// Returns a scene that consists of one transformed mesh with the given vertices.
 fn scene(corners: Vec<Vec3>) -> Scene {
@@ -68,7 +78,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
 #[test]
 fn up_in_a_model_is_up_in_its_picture() {
     for (axis, up) in [(Axis::X, Vec3::X), (Axis::Y, Vec3::Y), (Axis::Z, Vec3::Z)] {
-        for view in VIEWS.into_iter().filter(|view| *view != PresetView::Top) {
+        for view in VIEWS.into_iter().filter(|view| !matches!(view, PresetView::Top | PresetView::Bottom)) {
             let scene_defaults = SceneDefaults { view: Some(view), up: Some(axis), ..SceneDefaults::default() };
             let scene = staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &scene_defaults);
             let pose = scene.camera.as_ref().unwrap().pose();

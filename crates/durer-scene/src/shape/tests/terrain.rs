@@ -30,7 +30,7 @@ fn terrain_equals_its_mesh_as_lists() {
                 let mesh = Mesh::of_terrain(terrain.clone(), rule).centered();
                 let listed = Mesh::new(data.clone(), rule, true).centered();
                 assert_eq!((mesh.len(), mesh.center()), (listed.len(), listed.center()));
-                assert_eq!((mesh.open_edge(), mesh.is_flat()), (listed.open_edge(), listed.is_flat()));
+                assert_eq!((mesh.open_edges(), mesh.is_flat()), (listed.open_edges(), listed.is_flat()));
                 assert_eq!(mesh.tree(BuildQuality::Fast).bounds(), listed.tree(BuildQuality::Fast).bounds());
                 for part in 0..mesh.len() as u32 {
                     assert_eq!(mesh.corners(part), listed.corners(part), "{part}");
