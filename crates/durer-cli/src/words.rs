@@ -102,20 +102,26 @@ fn mentions(all: &[Entry], term: &str) -> Vec<String> {
         let begins = |at: usize| !text[..at].ends_with(char::is_alphanumeric);
         terms.iter().any(|term| text.match_indices(term).any(|(at, _)| begins(at)))
     };
-    let mut rows: Vec<(bool, String, String)> = Vec::new();
+    // Words with exactly the name come first, then those whose name contains it.
+    let rank = |name: &str| match terms.contains(&&*name.to_lowercase()) {
+        true => 0,
+        false if is_named(name) => 1,
+        false => 2,
+    };
+    let mut rows: Vec<(u32, String, String)> = Vec::new();
     for entry in all {
         let name = entry.keywords[0].0;
         if is_named(name) || is_mentioned(&entry.doc) {
-            rows.push((!is_named(name), name.into(), first_sentence(&entry.doc).into()));
+            rows.push((rank(name), name.into(), first_sentence(&entry.doc).into()));
         }
         for field in &entry.fields {
             let Some((word, _)) = field.words.first() else { continue };
             if is_named(word) || is_mentioned(&field.doc) {
-                rows.push((!is_named(word), format!("{name}: {word}"), first_sentence(&field.doc).into()));
+                rows.push((rank(word), format!("{name}: {word}"), first_sentence(&field.doc).into()));
             }
         }
     }
-    rows.sort_by_key(|(is_doc, ..)| *is_doc);
+    rows.sort_by_key(|(rank, ..)| *rank);
     rows.truncate(24);
     let width = rows.iter().map(|(_, name, _)| name.chars().count()).max().unwrap_or(0);
     rows.into_iter().map(|(_, name, doc)| format!("  {name:<width$}  {doc}")).collect()
