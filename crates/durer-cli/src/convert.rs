@@ -16,8 +16,8 @@ use durer::format::course::{self, ReadOptions, write};
 use durer::format::scene::Written;
 use durer::format::{json, mesh_format_for, scene_format_for, scene_writer_for};
 use durer::image::Destination;
-use durer::load;
 use durer::scene::{RenderDefaults, Scene};
+use durer::{LoadOptions, LoadedScene, load, load_text};
 use std::path::{Path, PathBuf};
 
 /// Convert a scene to a dialect, JSON, glTF, pbrt, Mitsuba or USD, or its meshes to PLY, OBJ or STL
@@ -94,9 +94,18 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         true => json::write(scene, dialect).into_bytes(),
         false => write(scene, dialect).into_bytes(),
     };
+    let mut warnings = Diagnostics::default();
+    let mut is_marked = false;
     if !as_json {
-        warn_of_foreign_words(&text(&loaded.scene), dialect);
+        let written = text(&loaded.scene);
+        warn_of_foreign_words(&written, dialect, &mut warnings);
+        is_marked = !is_read_as(dialect, &written, &mut warnings);
     }
+    warn_of_files_left_behind(args, &loaded, &mut warnings);
+    report::print(&Files::default(), &warnings, false);
+    // Only Dürer's dialect has comments.
+    let mark = if is_marked { "# A scene in the dialect of Dürer.\n" } else { "" };
+    let text = |scene: &Scene| [mark.as_bytes(), &text(scene)].concat();
     if !loaded.scene.assets.has_in_memory() {
         return output::save(&[(&destination, text(&loaded.scene))], false);
     }
@@ -121,14 +130,42 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
 }
 
 /// Warns of words in a written scene that its dialect lacks.
-fn warn_of_foreign_words(text: &[u8], dialect: Dialect) {
+fn warn_of_foreign_words(text: &[u8], dialect: Dialect, warnings: &mut Diagnostics) {
     let (compat, mut found) = (dialect.rules().quirks, Diagnostics::default());
     course::read(text, 0, ReadOptions { dialect, strict: false, compat }, &mut found);
     let foreign = found.iter().filter(|diagnostic| diagnostic.code == "foreign-word");
     let warn = |found: &Diagnostic| Diagnostic::warning(found.message.clone()).code("NO_COUNTERPART");
-    let mut warnings = Diagnostics::default();
     foreign.map(warn).for_each(|warning| warnings.push(warning));
-    report::print(&Files::default(), &warnings, false);
+}
+
+/// Returns false if a written scene needs a mark to be read in Dürer's dialect. Warns if it would be
+/// read in another dialect than that of a course.
+fn is_read_as(dialect: Dialect, text: &[u8], warnings: &mut Diagnostics) -> bool {
+    let (mut files, mut found) = (Files::default(), Diagnostics::default());
+    let read = load_text(Path::new("scene.txt"), text.into(), &LoadOptions::default(), &mut files, &mut found);
+    let Some(other) = read.map(|read| read.dialect).filter(|other| *other != dialect) else { return true };
+    if dialect == Dialect::Durer {
+        return false;
+    }
+    let message = format!("nothing in the file tells its dialect, so it is read as {}", other.name());
+    let help = format!("render it with `--dialect {}`", dialect.name());
+    warnings.push(Diagnostic::warning(message).code("dialect").help(help));
+    true
+}
+
+/// Warns if a scene is written to another folder than that of the files to which it refers.
+fn warn_of_files_left_behind(args: &ConvertArgs, loaded: &LoadedScene, warnings: &mut Diagnostics) {
+    let folder = |path: &Path| {
+        let parent = path.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."));
+        parent.canonicalize().unwrap_or(parent.into())
+    };
+    let (from, to) = (folder(&args.scene), folder(&args.output));
+    let first = loaded.named_files().into_iter().find(|path| path.exists());
+    if let (Some(first), true) = (first, from != to && !loaded.scene.assets.has_in_memory()) {
+        let message = format!("the scene refers to `{}` and other files of its folder", first.display());
+        let help = format!("copy them to the new folder, or render the scene with `--assets {}`", from.display());
+        warnings.push(Diagnostic::warning(message).code("missing-file").help(help));
+    }
 }
 
 /// Saves a scene and the files beside it: all of them or none.

@@ -46,22 +46,23 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     let in_blocks: Vec<(&Entry, &FieldEntry)> =
         all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
     if begun.is_empty() && in_blocks.is_empty() {
-        let found = mentions(&all, word);
-        if let Some(usage) = topic(word) {
+        let term = &with_spaces(word);
+        let found = mentions(&all, term);
+        if let Some(usage) = topic(term) {
             print_line(&format!("`{word}` is not a word of the language: {usage}."));
         }
         if !found.is_empty() {
-            match topic(word) {
+            match topic(term) {
                 Some(_) => print_line("\nThese words are about it:"),
                 None => print_line(&format!("`{word}` is not a word of the language. These words are about it:")),
             }
             found.iter().for_each(|row| print_line(row));
-            if let Some(example) = example(word) {
+            if let Some(example) = example(term) {
                 print_line(&format!("\nExample:\n  {example}"));
             }
             print_line("\n`durer words WORD` describes a word and its fields.");
         }
-        if !found.is_empty() || topic(word).is_some() {
+        if !found.is_empty() || topic(term).is_some() {
             return Ok(());
         }
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
@@ -77,6 +78,19 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     }
     print_line(&parts.join("\n\n"));
     Ok(())
+}
+
+/// Splits a word such as `AreaLight` at its capital letters.
+fn with_spaces(word: &str) -> String {
+    let (mut spaced, mut was_small) = (String::new(), false);
+    for letter in word.chars() {
+        if was_small && letter.is_uppercase() {
+            spaced.push(' ');
+        }
+        was_small = letter.is_lowercase();
+        spaced.push(letter);
+    }
+    spaced
 }
 
 fn dialect_by_name(name: &str) -> Result<Dialect, Failure> {

@@ -43,7 +43,8 @@ fn words_are_found_as_people_write_them() {
         ("point light", "PointLight ("),
         ("spot-light", "SpotLight"),
         ("cube", "\n  Box "),
-        ("IES", "ies"),
+        ("IES", "PhotometricLight"),
+        ("AreaLight", "emissionLuminance"),
         ("--all --dialect f04", "PhongMaterial"),
     ] {
         let output = folder.expect_exit(0, &format!("words {asked}")).out;
@@ -227,6 +228,33 @@ fn conversion_warns_of_words_that_the_dialect_lacks() {
     let output = folder.expect_exit(0, "convert torus.txt -o old.txt --to f04");
     assert!(output.err.contains("`Torus` is not a word of f04"), "{}", output.err);
     assert!(!folder.expect_exit(0, "convert scene.txt -o same.txt --to f04").err.contains("NO_COUNTERPART"));
+}
+
+#[test]
+fn converted_scene_is_read_in_its_dialect() {
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "convert scene.txt -o ours.txt --to durer");
+    let info = folder.expect_exit(0, "info ours.txt").out;
+    assert!(info.contains("dialect    durer"), "{info}");
+    folder.write("plain.txt", SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
+    let output = folder.expect_exit(0, "convert plain.txt -o plain16.txt --to f16");
+    let read = folder.expect_exit(0, "info plain16.txt").out;
+    let is_known = read.contains("dialect    f16");
+    assert!(is_known || output.err.contains("render it with `--dialect f16`"), "{read} {}", output.err);
+}
+
+#[test]
+fn conversion_to_another_folder_warns_of_files_left_behind() {
+    let folder = TestFolder::new();
+    folder.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write(
+        "mesh.txt",
+        SCENE.replacen("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file ball.obj }", 1),
+    );
+    std::fs::create_dir(folder.path("other")).unwrap();
+    let output = folder.expect_exit(0, "convert mesh.txt -o other/mesh.txt");
+    assert!(output.err.contains("ball.obj") && output.err.contains("--assets"), "{}", output.err);
+    assert!(!folder.expect_exit(0, "convert mesh.txt -o again.txt").err.contains("--assets"));
 }
 
 #[test]

@@ -114,8 +114,8 @@ impl Writer<'_> {
                     let boundary = Boundary::new(*ior, rough.alpha[0].sqrt(), rough.facets);
                     let fades = *darkens && base.picture.is_none();
                     paint.color = base.color.map(|color| boundary.color(color, fades));
-                    // Rough plastic of Mitsuba loses light between its facets. A colour above 1 cannot
-                    // make up for that, but Disney's material loses none.
+                    // Rough plastic of Mitsuba loses light between its facets. A colour above 1
+                    // cannot make up for that, but Disney's material loses none.
                     if paint.color.max_element() > 1.0 + 1e-3 {
                         return self.disney(base, *ior, *specular, rough);
                     }
