@@ -138,8 +138,8 @@ fn warn_of_foreign_words(text: &[u8], dialect: Dialect, warnings: &mut Diagnosti
     foreign.map(warn).for_each(|warning| warnings.push(warning));
 }
 
-/// Returns false if a written scene needs a mark to be read in Dürer's dialect. Warns if it would be
-/// read in another dialect than that of a course.
+/// Returns false if a written scene needs a mark to be read in Dürer's dialect. Warns if a scene
+/// in the dialect of a course would be read in another one.
 fn is_read_as(dialect: Dialect, text: &[u8], warnings: &mut Diagnostics) -> bool {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let read = load_text(Path::new("scene.txt"), text.into(), &LoadOptions::default(), &mut files, &mut found);

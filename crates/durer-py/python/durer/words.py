@@ -971,7 +971,7 @@ class PhongMaterial(Material):
 
     refraction_index: number, 0 or more. Index of refraction of glass that reflects and transmits light by the Fresnel equations; 0 for no glass.
 
-    texture: path. Texture that replaces the diffuse colour on meshes with texture coordinates.
+    texture: path. Texture that replaces the diffuse colour where the object has texture coordinates.
 
     bump: path. Bump map; ignored, as it is by the official programs of every year.
     """
