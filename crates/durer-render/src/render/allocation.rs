@@ -8,7 +8,7 @@
 //! would minimise the mean squared error (Neyman 1934; Cochran, *Sampling Techniques*, 1977,
 //! section 5.5). Here they are proportional to the cube root of the variance: the error of Sobol
 //! points falls faster with their number, and a pixel whose variance is underestimated costs more
-//! than one whose variance is overestimated. With 64 samples on average, the squared error is 0.80
+//! than one whose variance is overestimated. With 64 samples on average, the squared error is 0.81
 //! (Cornell box), 0.81 (kitchen) and 0.92 (glossy dragon) of that with the square root.
 //!
 //! The relevant variance is the one that remains when more samples are taken. With Sobol points,
