@@ -17,7 +17,8 @@ use durer::format::scene::Written;
 use durer::format::{json, mesh_format_for, scene_format_for, scene_writer_for};
 use durer::image::Destination;
 use durer::scene::{RenderDefaults, Scene};
-use durer::{LoadOptions, LoadedScene, load, load_text};
+use durer::{LoadedScene, load};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Convert a scene to a dialect, JSON, glTF, pbrt, Mitsuba or USD, or its meshes to PLY, OBJ or STL
@@ -90,43 +91,61 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         return output::save(&[(&destination, (format.write)(&mesh))], false);
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
-    let text = |scene: &Scene| match as_json {
-        true => json::write(scene, dialect).into_bytes(),
-        false => write(scene, dialect).into_bytes(),
-    };
     let mut warnings = Diagnostics::default();
-    let mut is_marked = false;
-    if !as_json {
-        let written = text(&loaded.scene);
-        warn_of_foreign_words(&written, dialect, &mut warnings);
-        is_marked = !is_read_as(dialect, &written, &mut warnings);
-    }
-    warn_of_files_left_behind(args, &loaded, &mut warnings);
-    report::print(&Files::default(), &warnings, false);
-    // Only Dürer's dialect has comments.
-    let mark = if is_marked { "# A scene in the dialect of Dürer.\n" } else { "" };
-    let text = |scene: &Scene| [mark.as_bytes(), &text(scene)].concat();
-    if !loaded.scene.assets.has_in_memory() {
-        return output::save(&[(&destination, text(&loaded.scene))], false);
-    }
     // A text scene refers to other files, so the files of a model are written to a folder named
     // after the output.
-    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
-    let folder = sanitize_name(&stem);
-    if folder == name {
-        return Err(invalid_input(
-            "the output needs an extension, for example `scene.txt`: the name without the extension is the folder \
-             for the model's files",
-        ));
-    }
-    let (scene, files) = loaded.export_assets(&folder);
-    if let Some(options) = requested_picture(&loaded.scene.render_defaults) {
+    let is_model = loaded.scene.assets.has_in_memory();
+    let (scene, files) = if is_model {
+        let (scene, files) = loaded.export_assets(&model_folder(args, &name)?);
+        (Cow::Owned(scene), files)
+    } else {
+        warn_of_files_left_behind(args, &loaded, &mut warnings);
+        (Cow::Borrowed(&loaded.scene), Vec::new())
+    };
+    let text = match as_json {
+        true => json::write(&scene, dialect),
+        false => text_in(dialect, &scene, args, &mut warnings),
+    };
+    report::print(&Files::default(), &warnings, false);
+    if is_model && let Some(options) = requested_picture(&loaded.scene.render_defaults) {
         let message = "the input file also sets the size and quality of the picture, but a scene file cannot store \
                        these settings";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
-    let bytes = text(&scene);
-    save_with_files(args, destination, Written { bytes, files }, &mut registry)
+    save_with_files(args, destination, Written { bytes: text.into_bytes(), files }, &mut registry)
+}
+
+/// Returns the name of the folder for the files of a model, which is that of the output without its
+/// extension.
+fn model_folder(args: &ConvertArgs, name: &str) -> Result<String, Failure> {
+    let folder = sanitize_name(&args.output.file_stem().unwrap_or_default().to_string_lossy());
+    if folder != name {
+        return Ok(folder);
+    }
+    Err(invalid_input(
+        "the output needs an extension, for example `scene.txt`: the name without the extension is the folder \
+         for the model's files",
+    ))
+}
+
+/// Returns the text of a scene. Warns of words that the dialect lacks, and of a text that would be
+/// read in another dialect.
+fn text_in(dialect: Dialect, scene: &Scene, args: &ConvertArgs, warnings: &mut Diagnostics) -> String {
+    let text = write(scene, dialect);
+    warn_of_foreign_words(text.as_bytes(), dialect, warnings);
+    let base = args.output.parent().unwrap_or(Path::new(""));
+    let read = course::guess(text.as_bytes(), 0, &[], &|name| base.join(name).exists()).dialect;
+    if read == dialect {
+        return text;
+    }
+    if dialect == Dialect::Durer {
+        // Only this dialect has comments.
+        return format!("# A scene in the dialect of Dürer.\n{text}");
+    }
+    let message = format!("nothing in the file tells its dialect, so it is read as {}", read.name());
+    let help = format!("render it with `--dialect {}`", dialect.name());
+    warnings.push(Diagnostic::warning(message).code("dialect").help(help));
+    text
 }
 
 /// Warns of words in a written scene that its dialect lacks.
@@ -138,21 +157,6 @@ fn warn_of_foreign_words(text: &[u8], dialect: Dialect, warnings: &mut Diagnosti
     foreign.map(warn).for_each(|warning| warnings.push(warning));
 }
 
-/// Returns false if a written scene needs a mark to be read in Dürer's dialect. Warns if a scene
-/// in the dialect of a course would be read in another one.
-fn is_read_as(dialect: Dialect, text: &[u8], warnings: &mut Diagnostics) -> bool {
-    let (mut files, mut found) = (Files::default(), Diagnostics::default());
-    let read = load_text(Path::new("scene.txt"), text.into(), &LoadOptions::default(), &mut files, &mut found);
-    let Some(other) = read.map(|read| read.dialect).filter(|other| *other != dialect) else { return true };
-    if dialect == Dialect::Durer {
-        return false;
-    }
-    let message = format!("nothing in the file tells its dialect, so it is read as {}", other.name());
-    let help = format!("render it with `--dialect {}`", dialect.name());
-    warnings.push(Diagnostic::warning(message).code("dialect").help(help));
-    true
-}
-
 /// Warns if a scene is written to another folder than that of the files to which it refers.
 fn warn_of_files_left_behind(args: &ConvertArgs, loaded: &LoadedScene, warnings: &mut Diagnostics) {
     let folder = |path: &Path| {
@@ -161,7 +165,7 @@ fn warn_of_files_left_behind(args: &ConvertArgs, loaded: &LoadedScene, warnings:
     };
     let (from, to) = (folder(&args.scene), folder(&args.output));
     let first = loaded.named_files().into_iter().find(|path| path.exists());
-    if let (Some(first), true) = (first, from != to && !loaded.scene.assets.has_in_memory()) {
+    if let (Some(first), true) = (first, from != to) {
         let message = format!("the scene refers to `{}` and other files of its folder", first.display());
         let help = format!("copy them to the new folder, or render the scene with `--assets {}`", from.display());
         warnings.push(Diagnostic::warning(message).code("missing-file").help(help));

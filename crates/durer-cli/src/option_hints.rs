@@ -110,25 +110,20 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
             given.strip_prefix('-').is_some_and(|name| argument.get_short().map(String::from).as_deref() == Some(name))
         }
     };
-    let separated = separate_value(&words, &given).or_else(|| negation(&given, command));
-    let help = match known {
-        Some((_, _, help)) => help.to_string(),
-        None if separated.is_some() => separated.unwrap_or_default(),
-        None if render.is_some_and(|render| render.get_arguments().any(is_given)) => {
+    let of_render = || {
+        render?.get_arguments().any(is_given).then(|| {
             format!("`{given}` is an option of `durer render`, which has no meaning for `durer {}`", command.get_name())
-        }
-        None if given.starts_with("--") => {
-            let options = command.get_arguments().filter_map(Arg::get_long);
-            match did_you_mean(&given[2..], options) {
-                Some(near) => format!("did you mean `--{near}`?"),
-                None => format!(
-                    "`durer {} {}` lists the options",
-                    command.get_name(),
-                    if has("help-all") { "--help-all" } else { "--help" }
-                ),
-            }
-        }
-        None => return error,
+        })
+    };
+    let similar = || {
+        let near = did_you_mean(given.strip_prefix("--")?, command.get_arguments().filter_map(Arg::get_long));
+        let list = if has("help-all") { "--help-all" } else { "--help" };
+        let listed = || format!("`durer {} {list}` lists the options", command.get_name());
+        Some(near.map_or_else(listed, |near| format!("did you mean `--{near}`?")))
+    };
+    let help = known.map(|row| row.2.to_string()).or_else(|| separate_value(&words, &given));
+    let Some(help) = help.or_else(|| negation(&given, command)).or_else(of_render).or_else(similar) else {
+        return error;
     };
     let course = if whole.is_some() { " (`durer course` takes the course's options)" } else { "" };
     for kind in [ContextKind::SuggestedArg, ContextKind::SuggestedValue, ContextKind::Suggested, ContextKind::Usage] {

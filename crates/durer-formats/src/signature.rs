@@ -81,7 +81,7 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
     let span = Span { file, start: 0, end: start.trim_ascii_end().len() as u32 };
     let error = if is_text { error.at(span) } else { error };
     Some(error.help(match (own, what.starts_with("a picture")) {
-        (Some(own), _) if last.to_lowercase().ends_with(&format!(".{own}")) => {
+        (Some(own), _) if super::extension(last) == *own => {
             format!("convert the file: `durer convert {last} -o {stem}.ply` for a mesh, or `-o {stem}.txt` for a scene")
         }
         (Some(own), _) => format!("rename the file to `{stem}.{own}`"),

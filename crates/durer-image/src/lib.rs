@@ -38,7 +38,7 @@ pub use limits::{can_allocate, checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
 #[cfg(feature = "fs")]
 pub use save::{Destination, SaveError, save, save_all};
-pub use transfer::{Transfer, decode_linear, decode_srgb, linear_from_srgb};
+pub use transfer::{Transfer, decode_hexadecimal, decode_linear, decode_srgb, linear_from_srgb};
 
 use durer_bvh::math::Vec3;
 use std::sync::Arc;

@@ -130,6 +130,14 @@ pub fn decode_srgb(value: u8) -> f32 {
     linear_from_srgb(decode_linear(value))
 }
 
+/// Returns the linear values of an sRGB colour in the form `#rrggbb`, or `None` for other texts.
+pub fn decode_hexadecimal(text: &str) -> Option<[f32; 3]> {
+    let digits =
+        text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some([r, g, b].map(decode_srgb))
+}
+
 /// Converts an sRGB value in [0, 1] to a linear value.
 pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
@@ -138,6 +146,16 @@ pub fn linear_from_srgb(value: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hexadecimal_colors_are_decoded() {
+        assert_eq!(decode_hexadecimal("#ff00Cc"), Some([1.0, 0.0, decode_srgb(204)]));
+        assert!(
+            ["", "#", "ff00cc", "#ff00c", "#ff00ccc", "#+f00cc", "#ff00cg"]
+                .iter()
+                .all(|text| decode_hexadecimal(text).is_none())
+        );
+    }
 
     #[test]
     fn names_round_trip() {

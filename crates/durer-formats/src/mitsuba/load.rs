@@ -9,7 +9,7 @@ use crate::model::ReadInput;
 use crate::shared_report::{SharedReport, suggest};
 use crate::xml::{Attribute, Event, Tag, Xml, utf8};
 use durer_diag::{Diagnostic, Span};
-use durer_image::decode_srgb;
+use durer_image::{decode_hexadecimal, decode_srgb};
 use durer_scene::math::Vec3;
 use durer_scene::source::SourceError;
 use glam::DVec3;
@@ -468,11 +468,8 @@ impl<'a> Loader<'a> {
     /// Parses three numbers, a single number for all three, or a colour `#rrggbb` in sRGB.
     fn rgb(&self, attribute: &(String, Span), curved: bool) -> Option<Vec3> {
         let text = attribute.0.trim();
-        if let Some(digits) = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()) {
-            let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
-            if let (Some(r), Some(g), Some(b)) = (byte(0), byte(1), byte(2)) {
-                return Some(Vec3::from([r, g, b].map(decode_srgb)));
-            }
+        if let Some(color) = decode_hexadecimal(text) {
+            return Some(color.into());
         }
         let color = match numbers(text).as_deref() {
             Some([one]) => Vec3::splat(*one as f32),

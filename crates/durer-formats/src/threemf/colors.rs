@@ -3,7 +3,7 @@
 use super::model::{Color, Model, Properties, PropertyKind};
 use super::parser::{ErrorReported, Parser};
 use crate::xml::Tag;
-use durer_image::decode_srgb;
+use durer_image::decode_hexadecimal;
 use durer_scene::math::Vec2;
 
 impl Model {
@@ -50,11 +50,13 @@ impl Parser<'_, '_> {
             self.report.error(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
             return None;
         };
-        let digits = attribute.value.strip_prefix('#').filter(|digits| digits.is_ascii());
-        let byte = |digits: &str, i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok();
-        let color = digits.filter(|digits| [6, 8].contains(&digits.len())).and_then(|digits| {
-            let [r, g, b] = [byte(digits, 0)?, byte(digits, 1)?, byte(digits, 2)?].map(decode_srgb);
-            let alpha = if digits.len() == 8 { byte(digits, 3)? } else { 255 };
+        let (color, alpha) = attribute.value.split_at_checked(7).unwrap_or((&attribute.value, ""));
+        let color = decode_hexadecimal(color).and_then(|[r, g, b]| {
+            let alpha = match alpha.len() {
+                0 => 255,
+                2 => u8::from_str_radix(alpha, 16).ok()?,
+                _ => return None,
+            };
             Some([r, g, b, f32::from(alpha) / 255.0])
         });
         if color.is_none() {

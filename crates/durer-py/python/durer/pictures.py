@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import Floats, as_array
-from .world import PathLike, Pictures, _write
+from .world import PathLike, Pictures, shown_with, write_atomically
 
 
 def read(path: PathLike) -> tuple[Floats, bool]:
@@ -45,9 +45,9 @@ def write(
     >>> durer.write("grey.png", np.full((30, 40, 3), 0.5))
     """
     values, is_display = _scaled("picture", picture)
-    shown = (2.0**exposure, tone, transfer, bits)
+    shown = shown_with(transfer, exposure, tone, bits)
     content = _durer.encode(os.fspath(path), [("color", values, None, not is_display)], shown)
-    _write(Path(path), content)
+    write_atomically(Path(path), content)
 
 
 def compare(

@@ -75,23 +75,24 @@ class Pictures(dict[str, Floats]):
         >>> world.render(size=(8, 8), samples=1).file("a.png", exposure=1, bits=16)[:4]
         b'\\x89PNG'
         """
-        integers = Path(name).suffix.lower() not in (".pfm", ".hdr", ".exr")
-        if not np.isfinite(exposure):
-            raise ValueError(f"exposure must be a number of stops, but is {exposure!r}")
-        layers = []
-        for own, width, height, values, alpha in self._layers(integers):
-            color = own in ("color", "denoised")
-            layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        shown = shown_with(transfer, exposure, tone, bits)
+        layers = self._encodable(name)
         if layer is not None:
             layers = [row for row in layers if row[0] == layer]
             if not layers:
                 raise ValueError(f"there is no image {layer!r}; the images are {', '.join(self)}")
-        shown = (2.0**exposure, tone, transfer, bits)
-        return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], shown)
+        return _durer.encode(name, layers if _holds_all(name) else layers[:1], shown)
 
-    def _layers(self, shown: bool) -> list[tuple[str, int, int, Floats, Optional[Floats]]]:
-        layers = self.part._part.pictures(shown)
-        return [*([] if self._denoised is None else [self._denoised]), *layers]
+    def _encodable(self, name: str) -> list[tuple[str, Floats, Optional[list[float]], bool]]:
+        """Returns the name, values and coverage of each image, and true if it is a colour, in the
+        form that `_durer.encode` takes for a file of this name."""
+        integers = Path(name).suffix.lower() not in (".pfm", ".hdr", ".exr")
+        pictures = [*([] if self._denoised is None else [self._denoised]), *self.part._part.pictures(integers)]
+        layers = []
+        for own, width, height, values, alpha in pictures:
+            color = own in ("color", "denoised")
+            layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        return layers
 
     def save(
         self, path: PathLike, transfer: str = "srgb", *, exposure: float = 0.0, tone: str = "none", bits: int = 8
@@ -107,18 +108,17 @@ class Pictures(dict[str, Floats]):
         >>> [path.name for path in world.render(show="color,depth", size=(8, 8)).save("ball.png")]
         ['ball.color.png', 'ball.depth.png']
         """
-        path = Path(path)
-        names: list[Optional[str]] = [row[0] for row in self.part._part.pictures(False)]
-        if self._denoised is not None:
-            names[0] = self._denoised[0]
-        several = len(names) > 1 and path.suffix.lower() != ".exr"
-        saved = []
-        for name in names if several else [None]:
-            written = path.with_suffix(f".{name}{path.suffix}") if name is not None else path
-            content = self.file(written.name, transfer, exposure=exposure, tone=tone, bits=bits, layer=name)
-            _write(written, content)
-            saved.append(written)
-        return saved
+        path, shown = Path(path), shown_with(transfer, exposure, tone, bits)
+        layers = self._encodable(path.name)
+        if not _holds_all(path.name) and self._denoised is not None:
+            # The denoised image takes the place of the noisy one.
+            layers = [row for row in layers if row[0] != "color"]
+        files = {path: layers}
+        if not _holds_all(path.name) and len(layers) > 1:
+            files = {path.with_suffix(f".{row[0]}{path.suffix}"): [row] for row in layers}
+        for written, rows in files.items():
+            write_atomically(written, _durer.encode(written.name, rows, shown))
+        return list(files)
 
     @property
     def stats(self) -> dict[str, int]:
@@ -137,7 +137,19 @@ class Pictures(dict[str, Floats]):
         return f"<Pictures: {', '.join(f'{name} {picture.shape}' for name, picture in self.items())}>"
 
 
-def _write(path: Path, content: bytes) -> None:
+def shown_with(transfer: str, exposure: float, tone: str, bits: int) -> tuple[float, str, str, int]:
+    """Returns how values are converted for formats with integer values, for `_durer.encode`."""
+    if not np.isfinite(exposure):
+        raise ValueError(f"exposure must be a number of stops, but is {exposure!r}")
+    return 2.0**exposure, tone, transfer, bits
+
+
+def _holds_all(name: str) -> bool:
+    """Returns true if the format of a file can contain several images."""
+    return name.lower().endswith(".exr")
+
+
+def write_atomically(path: Path, content: bytes) -> None:
     """Writes a file atomically."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -191,7 +203,7 @@ class Part:
 
     def save(self, path: PathLike) -> None:
         """Writes the part to a file."""
-        _write(Path(path), self.bytes())
+        write_atomically(Path(path), self.bytes())
 
     def pictures(self) -> Pictures:
         """Returns the images rendered so far. Pixels without samples are black."""
@@ -380,7 +392,7 @@ class World:
         command renders to the same image."""
         Path(folder).mkdir(parents=True, exist_ok=True)
         for name, content in self.files.items():
-            _write(Path(folder) / name, content)
+            write_atomically(Path(folder) / name, content)
         return Path(folder) / next(iter(self.files))
 
     @property

@@ -1,7 +1,7 @@
 //! Forms of option values, which define how their text is checked, parsed and printed.
 
 use durer_diag::did_you_mean;
-use durer_image::decode_srgb;
+use durer_image::decode_hexadecimal;
 use durer_render::render::Backdrop;
 use durer_scene::math::{Color, Vec3};
 
@@ -121,14 +121,6 @@ impl OptionValue for (u32, u32) {
     }
 }
 
-/// Returns the linear colour of an sRGB colour in the form `#rrggbb`.
-fn hexadecimal(text: &str) -> Option<Color> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
-    let number = u32::from_str_radix(digits, 16).ok()?;
-    let [_, r, g, b] = number.to_be_bytes();
-    Some(Color::from([r, g, b].map(decode_srgb)))
-}
-
 /// Background that the camera sees.
 impl OptionValue for Backdrop {
     fn parse(text: &str) -> Result<Self, String> {
@@ -138,7 +130,10 @@ impl OptionValue for Backdrop {
         let color = match text {
             "white" => Some(Color::ONE),
             "black" => Some(Color::ZERO),
-            _ => hexadecimal(text).or_else(|| three_numbers(text).filter(|color| color.min_element() >= 0.0)),
+            _ => {
+                let numbers = || three_numbers(text).filter(|color| color.min_element() >= 0.0);
+                decode_hexadecimal(text).map(Color::from).or_else(numbers)
+            }
         };
         let expected = "expected `transparent`, `white`, `black`, an sRGB colour such as #ffcc00, or red, green and blue as \
                         linear light, for example 0.5,0.5,0.5";
