@@ -1,6 +1,7 @@
 //! Implements `durer explain`, which explains the colour of a pixel.
 
 mod page;
+mod tree_drawing;
 
 use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::file_registry::FileRegistry;
@@ -34,6 +35,7 @@ use std::sync::Arc;
   durer explain scene.txt --pixel 200,150
   durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
   durer explain scene.txt --brightest --html why.html
+  durer explain scene.txt --pixel 200,150 --depth 4 --svg tree.svg
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
 
 Pass the same options as to `durer render`, because the colour depends on them, except those of the files to write. With one
@@ -83,6 +85,9 @@ pub struct ExplainArgs {
     /// Write an HTML page with the picture, the tree and the rays in 3D
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Draw the tree as an SVG file, for example for slides
+    #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["json", "html"])]
+    pub svg: Option<PathBuf>,
 }
 
 /// Splits the numbers of a `--ray`, which are separated by spaces or commas, into separate words
@@ -107,8 +112,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     args.job.options.adapt(&mut options.scene_defaults);
     let mut registry = FileRegistry::default();
     let page_file = args.html.as_ref().map(|path| registry.register_output("--html", path)).transpose()?;
+    let drawing_file = args.svg.as_ref().map(|path| registry.register_output("--svg", path)).transpose()?;
     let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
-    let view = ViewArgs { crop: args.crop, show: vec!["color".into()], zoom: 1 };
+    let view = ViewArgs { crop: args.crop, show: vec!["color".into()], zoom: None };
     let job = job(&args.job, Some(&view), &compiled.loaded, false)?;
     let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
         true => picture(args, &compiled, &job)?,
@@ -141,6 +147,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Explained::Ray(light) => ray_text(light, &names, &detail),
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
+    if let Some(destination) = &drawing_file {
+        return output::save(&[(destination, tree_drawing::tree_svg(&lines, transfer).into_bytes())], args.quiet);
+    }
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
     if let Explained::Pixel(pixel) = &subject

@@ -21,7 +21,8 @@ pub struct FramesArgs {
     /// Frames per second of the model's animation
     #[arg(long, value_name = "NUMBER", default_value_t = 24.0, requires = "frames", value_parser = rate)]
     pub fps: f64,
-    /// Rotate once around the model in this many frames; without --frames, render all of them
+    /// Rotate once around the model or scene in this many frames; without --frames, render all of
+    /// them
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=9999))]
     pub turntable: Option<u16>,
 }

@@ -10,10 +10,14 @@ use crate::open::{load_options, open};
 use crate::options::SceneArgs;
 use crate::terminal::print_line;
 use clap::Args;
+use durer::LoadedScene;
 use durer::bvh::TraversalStats;
 use durer::camera::{Projection, Raster};
 use durer::describe::DescribedKind;
+use durer::light::Light;
 use durer::render::{center_ray, raster};
+use durer::scene::Spanned;
+use durer::texture::almanac;
 use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -50,13 +54,19 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     if args.polar.is_some() {
         return Err(invalid_input("--polar needs a photometric file (.ies or .ldt)"));
     }
-    let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut FileRegistry::default())?;
+    let mut options = load_options(&args.reading);
+    // The summary is that of the file, without the ground that `durer render` adds.
+    options.scene_defaults.no_ground = true;
+    let compiled = open(&args.scene, &options, args.json, &mut FileRegistry::default())?;
     let (loaded, world) = (&compiled.loaded, &compiled.world);
     let dialect = loaded.dialect;
     let count = WorldCounts::of(world);
     let rays = rays(world);
     let surface = MeshSurface::of(world, count.triangles);
     let bounds = world.bounds();
+    let lights = own_lights(loaded, world);
+    let sun = loaded.scene.background.sun().map(almanac::angles);
+    let cameras = &loaded.scene.camera_names;
     let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
         let scene: serde_json::Value = serde_json::from_str(&durer::format::json::write(&loaded.scene, dialect))?;
@@ -66,7 +76,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "triangles": count.triangles,
             "distinct_triangles": count.distinct_triangles,
             "materials": world.materials().len(),
-            "lights": world.lights().len(),
+            "lights": lights.len(),
+            "cameras": cameras,
+            "sun": sun.map(|[altitude, azimuth]| serde_json::json!({ "altitude": altitude, "azimuth": azimuth })),
             "bounds": (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()]),
             "open_edges": surface.map(|surface| surface.open_edges),
             "area": surface.map(|surface| surface.area),
@@ -91,8 +103,21 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
     let (width, height) = loaded.scene.render_defaults.size.unwrap_or_else(natural);
     print_line(&format!("picture    {width}x{height} by default"));
-    for light in world.lights() {
+    if cameras.len() > 1 {
+        let name = |(i, name): (usize, &String)| if name.is_empty() { i.to_string() } else { format!("`{name}`") };
+        let names: Vec<String> = cameras.iter().enumerate().map(name).collect();
+        print_line(&format!("cameras    {}; choose one with `--camera NAME`", names.join(", ")));
+    }
+    for light in lights {
         print_line(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
+    }
+    if lights.len() < world.lights().len() {
+        print_line("light      none in the file, so that `durer render` adds the lights of `--studio soft`");
+    }
+    if let Some([altitude, azimuth]) = sun {
+        print_line(&format!(
+            "sun        {altitude:.2} degrees above the horizon, {azimuth:.2} degrees clockwise from north"
+        ));
     }
     let shapes: Vec<String> = count.shapes.iter().map(|(name, n)| format!("{n} {name}")).collect();
     print_line(&format!(
@@ -136,6 +161,13 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         print_line(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));
     }
     Ok(())
+}
+
+/// Returns the lights of a world without those that a model gets because its file has none.
+fn own_lights<'w>(loaded: &LoadedScene, world: &'w World) -> &'w [Light] {
+    let is_added = |light: &Spanned<Light>| !light.span.has_position();
+    let lights = loaded.scene.lights.as_deref().unwrap_or_default();
+    if loaded.scene.up.is_some() && lights.iter().all(is_added) { &[] } else { world.lights() }
 }
 
 /// Counts the traversal steps of camera rays in a low-resolution picture.

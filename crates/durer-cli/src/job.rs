@@ -7,6 +7,7 @@ use durer::LoadedScene;
 use durer::camera::{Projection, Raster};
 use durer::diag::Diagnostic;
 use durer::dialect::Quirk;
+use durer::integrator::IntegratorKind;
 use durer::job::{OutputSelection, RenderJob};
 use durer::render::{Job, Sampling};
 use durer::world::World;
@@ -18,7 +19,8 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed:
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(invalid_input)
 }
 
-/// Warns if the camera leaves part of the picture empty or if depth of field needs more samples.
+/// Warns if the camera leaves part of the picture empty, if depth of field needs more samples, or
+/// if photons are of no use.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
@@ -35,6 +37,11 @@ pub fn warn(job: &Job, world: &World) {
         let message = "one sample per pixel uses only the centre of the lens, so everything is in focus; use more \
                        `--samples`, for example 64";
         report::note(&Diagnostic::warning(message));
+    }
+    if matches!(job.method, IntegratorKind::Photons(_)) && !world.casts_caustics() {
+        let message = "photons have no effect: no object reflects or refracts light sharply";
+        let help = "a smooth surface has `specularRoughness 0`; the default of a `PrincipledMaterial` is 0.3";
+        report::note(&Diagnostic::warning(message).help(help));
     }
 }
 

@@ -127,8 +127,16 @@ pub struct ViewArgs {
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Magnification of the `samples` and `filter` pictures, in output pixels per rendered pixel
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub zoom: u32,
+    /// [default: 20]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub zoom: Option<u32>,
+}
+
+impl ViewArgs {
+    /// Returns the magnification of diagrams.
+    pub fn zoom(&self) -> u32 {
+        self.zoom.unwrap_or(20)
+    }
 }
 
 /// Options for threads, time and saved work

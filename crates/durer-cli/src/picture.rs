@@ -181,7 +181,12 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
                 "diagrams cannot be split into parts: remove --shard, or the diagram from --show",
             ));
         }
-        diagrams::check(&job, args.view.zoom).map_err(from_render_error)?;
+        diagrams::check(&job, args.view.zoom()).map_err(from_render_error)?;
+    } else if args.view.zoom.is_some() {
+        return Err(invalid_input(
+            "--zoom magnifies the pictures of --show samples and --show filter: add one of them, or enlarge the \
+             picture with --size",
+        ));
     }
     let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(from_render_error)?)?;
     // A picture in the terminal has a status line of its own.
@@ -248,7 +253,7 @@ fn pictures(
 ) -> Result<Rendered, Failure> {
     let (job, threads) = (part.job(), control.threads);
     let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(from_render_error)?;
-    diagrams::add(&args.view.show, args.view.zoom, world, job, control, &mut rendered).map_err(from_render_error)?;
+    diagrams::add(&args.view.show, args.view.zoom(), world, job, control, &mut rendered).map_err(from_render_error)?;
     if args.view.show.iter().any(|show| show == ERROR) {
         let [values, shown] = part.error(world, threads).map_err(from_render_error)?;
         rendered.layers.push(values);

@@ -56,9 +56,10 @@ pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnosti
     }
 }
 
-/// Prints a note on a single line.
+/// Prints a note and its help on a single line.
 pub fn note(diagnostic: &Diagnostic) {
-    print_error_line(&format!("note: {}", printable_line(&diagnostic.message)));
+    let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+    print_error_line(&printable_line(&format!("note: {}{help}", diagnostic.message)));
 }
 
 /// Prints the number of rejected samples, the first of them and, if the world is given, the cause.

@@ -114,7 +114,15 @@ fn mentions(all: &[Entry], term: &str) -> Vec<String> {
     let is_mentioned = |text: &str| {
         let text = text.to_lowercase();
         let begins = |at: usize| !text[..at].ends_with(char::is_alphanumeric);
-        terms.iter().any(|term| text.match_indices(term).any(|(at, _)| begins(at)))
+        // `softshadow` means `soft shadow`.
+        let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).collect();
+        let is_pair = |term: &str| {
+            words.windows(2).any(|pair| {
+                term.strip_prefix(pair[0])
+                    .is_some_and(|rest| pair[0].len() > 2 && !rest.is_empty() && pair[1].starts_with(rest))
+            })
+        };
+        terms.iter().any(|term| is_pair(term) || text.match_indices(term).any(|(at, _)| begins(at)))
     };
     // Words with exactly the name come first, then those whose name contains it.
     let rank = |name: &str| match terms.contains(&&*name.to_lowercase()) {

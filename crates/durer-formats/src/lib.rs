@@ -9,6 +9,7 @@
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
+mod camera_choice;
 #[cfg(feature = "collada")]
 mod collada;
 pub mod course;
@@ -169,7 +170,12 @@ fn unknown_format(name: &str) -> Diagnostic {
     let suggestion = did_you_mean(&extension, all).filter(|_| !extension.is_empty());
     let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
     let known = known.collect::<Vec<_>>().join(", ");
+    let is_model = scene::scene_format_for(name).is_some();
     Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match suggestion {
+        _ if is_model => format!(
+            "convert the model first, with `durer convert {name} -o {}` for its triangles",
+            std::path::Path::new(name).with_extension("ply").display()
+        ),
         Some(suggestion) => format!("did you mean `.{suggestion}`? Known formats are {known}"),
         None => format!("known formats are {known}"),
     })

@@ -1,10 +1,12 @@
-//! Placement of the camera by options, in place of the camera of the scene.
+//! Placement of the camera by options.
 
+use durer_bvh::glam::DVec3;
 use durer_render::world::World;
 use durer_scene::camera::{Camera, PerspectiveCamera, Projection};
+use durer_scene::describe::{DescribedKind, Value};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Axis;
-use durer_scene::scene::defaults::ModelAxes;
+use durer_scene::scene::defaults::{ModelAxes, rotation};
 
 /// Eye, target and field of view that replace those of the scene's camera. If any is given, the
 /// scene is rendered with a perspective camera.
@@ -53,4 +55,37 @@ impl CameraPlacement {
         world.set_camera(camera.into());
         Ok(())
     }
+}
+
+/// Rotates the camera of a world counter-clockwise as seen from above by this many degrees. The
+/// vertical axis passes through the point on the camera's line of sight that is beside the center
+/// of the scene. `up` is the up axis of a model; without it, the up direction of the camera is
+/// vertical. The camera keeps its kind.
+///
+/// # Errors
+///
+/// Returns a message if the camera is not defined by a position and a view direction.
+pub(crate) fn orbit(world: &mut World, up: Option<Axis>, degrees: f32) -> Result<(), String> {
+    let mut camera = world.camera().clone();
+    let pose = camera.pose();
+    let [center, direction, own_up] = [pose.center, pose.direction, pose.up].map(Vec3::as_dvec3);
+    let forward = direction.normalize_or(DVec3::NEG_Z);
+    let vertical = up.map_or(own_up.normalize_or(DVec3::Y), |up| ModelAxes::new(up).up);
+    let bounds = world.bounds();
+    let middle = if bounds.is_empty() { center } else { bounds.center().as_dvec3() };
+    let pivot = center + (middle - center).dot(forward).max(0.0) * forward;
+    let turned = rotation(vertical, f64::from(degrees));
+    let moved =
+        [("center", pivot + turned * (center - pivot)), ("direction", turned * direction), ("up", turned * own_up)];
+    for (name, value) in moved {
+        let Some(field) = camera.fields().iter().position(|field| field.name == name) else {
+            return Err(format!(
+                "a `{}` cannot be rotated around the scene: place another camera with `--eye X,Y,Z`",
+                camera.own_keyword()
+            ));
+        };
+        camera.set(field, Value::Vec3(value.as_vec3()));
+    }
+    world.set_camera(camera);
+    Ok(())
 }

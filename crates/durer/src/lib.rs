@@ -48,6 +48,8 @@ pub mod fuzz;
 pub mod job;
 #[cfg(feature = "load")]
 pub mod load;
+#[cfg(feature = "fs")]
+mod mesh_file;
 #[cfg(feature = "options")]
 pub mod options;
 pub mod prelude;
@@ -74,4 +76,6 @@ pub use error::{Error, SceneError};
 pub use job::RenderJob;
 #[cfg(feature = "load")]
 pub use load::{LoadOptions, LoadedScene, load, load_text};
+#[cfg(feature = "fs")]
+pub use mesh_file::open_mesh;
 pub use renderer::{Canceller, Picture, Renderer};

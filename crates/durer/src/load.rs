@@ -3,7 +3,7 @@
 
 mod model_options;
 
-use crate::camera_placement::CameraPlacement;
+use crate::camera_placement::{CameraPlacement, orbit};
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_formats::Decoder;
@@ -302,7 +302,14 @@ impl LoadedScene {
             None => work(),
         }?;
         let refuse = |problem| diagnostics.push(Diagnostic::error(problem).code("bad-value"));
-        options.placement.apply(&mut world, self.scene.up).map_err(refuse).ok()?;
+        let place = |world: &mut World| {
+            options.placement.apply(world, self.scene.up)?;
+            // The camera of a model has been rotated, unless an option has moved it since.
+            let is_still = self.scene.up.is_none() || options.placement.eye.is_some();
+            let degrees = options.scene_defaults.orbit_degrees.filter(|_| is_still);
+            degrees.map_or(Ok(()), |degrees| orbit(world, self.scene.up, degrees))
+        };
+        place(&mut world).map_err(refuse).ok()?;
         Some(world)
     }
 }

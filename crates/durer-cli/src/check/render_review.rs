@@ -57,7 +57,7 @@ struct RenderReview<'a> {
 impl RenderReview<'_> {
     fn review(&self, scan: Option<&PictureScan>, pictures: &[Layer], is_odd: impl Fn(&PictureFault) -> bool) {
         match scan.and_then(|scan| scan.fault(self.statistics)).filter(is_odd) {
-            Some(oddity) => self.report(&format!("the picture {}", oddity.description())),
+            Some(oddity) => self.report(&format!("the picture {}", oddity.description()), Some(oddity)),
             None => self.depths(pictures),
         }
     }
@@ -68,11 +68,11 @@ impl RenderReview<'_> {
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };
         let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
         if !layer.image.pixels.iter().any(grey) {
-            self.report("the depth picture has only black and white pixels and no grey ones");
+            self.report("the depth picture has only black and white pixels and no grey ones", None);
         }
     }
 
-    fn report(&self, what: &str) {
+    fn report(&self, what: &str, fault: Option<PictureFault>) {
         let rejected = self.statistics.first_rejected.first().map(|first| (first.x, first.y, first.sample));
         let (loaded, files) = (&self.compiled.loaded, &self.compiled.files);
         let (scene, world, dialect) = (&loaded.scene, &self.compiled.world, loaded.dialect);
@@ -88,6 +88,9 @@ impl RenderReview<'_> {
         let reported: Vec<_> =
             serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MAX_PRINTED).copied().collect();
         print_error_line(&match (serious.is_empty(), reported.is_empty()) {
+            (true, _) if fault == Some(PictureFault::Dark) => {
+                format!("note: {what}; `--exposure auto` makes it brighter")
+            }
             (true, _) => format!("warning: {what}"),
             (false, true) => format!("warning: {what}; the findings above explain why"),
             (false, false) => format!("warning: {what}; `durer check` reports:"),

@@ -231,6 +231,8 @@ fn faulty_picture_is_reported_after_the_render() {
     assert!(err.contains("lacks samples") && err.contains("[light-divides]") && err.contains("sample 0"), "{err}");
     let err = render("color-range.light.txt", "");
     assert!(err.contains("the picture is mostly white") && err.contains("[color-range]"), "{err}");
+    let err = render("scene.txt", "--exposure -6");
+    assert!(err.contains("the picture is nearly black"), "{err}");
     let err = render("scene.txt", "--show depth --depth-range 100 200");
     assert!(err.contains("[depth-range]"), "{err}");
     assert_eq!(render("camera-away.point.txt", "--quiet"), "");

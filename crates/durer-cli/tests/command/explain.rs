@@ -25,6 +25,18 @@ fn sum(node: &Value) -> [f32; 3] {
 }
 
 #[test]
+fn tree_is_drawn_as_svg() {
+    let folder = TestFolder::new();
+    folder.expect_exit(0, &format!("explain scene.txt --pixel 20,15 --svg tree.svg {SMALL}"));
+    let drawn = std::fs::read_to_string(folder.path("tree.svg")).unwrap();
+    let text = folder.expect_exit(0, &format!("explain scene.txt --pixel 20,15 {SMALL}")).out;
+    let terms = text.lines().filter(|line| line.trim_start().starts_with("+ (")).count();
+    // One row is the pixel itself.
+    assert!(terms > 3 && drawn.matches("<text").count() == terms + 1, "{text} {drawn}");
+    folder.expect_failure(2, "explain scene.txt --pixel 20,15 --svg scene.txt", &["scene.txt"]);
+}
+
+#[test]
 fn tree_sums_to_the_pixel_of_the_picture() {
     let folder = TestFolder::new();
     folder.expect_exit(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));

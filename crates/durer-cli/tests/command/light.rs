@@ -325,6 +325,12 @@ fn photons_spectra_and_fog_are_deterministic() {
     };
     let (paths, photons) = (mean("--integrator path"), mean("--integrator photons --photons 20000"));
     assert!(photons > 1.01 * paths, "{paths} {photons}");
+    // Photons only follow sharp reflection and refraction.
+    let small = "--integrator photons --photons 500 --size 4x3 --samples 1 -o p.png --restart";
+    assert!(!folder.expect_exit(0, &format!("render scene.txt {small}")).err.contains("no effect"));
+    folder.write("rough.txt", CAUSTIC.replace("preset glass", "transmissionWeight 1"));
+    let err = folder.expect_exit(0, &format!("render rough.txt {small}")).err;
+    assert!(err.contains("photons have no effect") && err.contains("specularRoughness 0"), "{err}");
 }
 
 #[test]

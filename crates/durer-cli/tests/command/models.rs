@@ -182,6 +182,9 @@ fn scenes_for_other_programs_are_saved_with_their_files_or_not_at_all() {
 const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
     Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }";
 
+const BALL: &str = "Materials { PhongMaterial { diffuseColor 1 0 0 } }
+    Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }";
+
 #[test]
 fn frames_are_times_cameras_and_files() {
     let folder = TestFolder::new();
@@ -215,8 +218,6 @@ fn frames_are_times_cameras_and_files() {
     folder.expect_failure(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
     folder.expect_failure(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
     folder.expect_failure(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
-    // A scene that has a camera cannot be turned, and the error message says so.
-    folder.expect_failure(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
     folder.expect_failure(2, "render a.stl --fps 4", &["--frames"]);
     assert!(folder.expect_exit(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }
@@ -229,6 +230,10 @@ fn turntable_rotates_and_fit_moves_the_camera() {
     let frame = |i: u32| std::fs::read(folder.path(&format!("a.000{i}.png"))).unwrap();
     assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
     assert!(!folder.path("a.0004.png").exists() && !folder.path("a.png").exists());
+    // `--eye` places the camera of the first frame.
+    let hash = |more: &str| folder.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    assert_eq!(hash("--eye 0.5,-4,2 --turned 0"), hash("--eye 0.5,-4,2"));
+    assert_ne!(hash("--eye 0.5,-4,2 --turned 90"), hash("--eye 0.5,-4,2"));
     folder.expect_failure(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
     folder.expect_failure(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
     // With --fit, a camera that pointed past the model shows the model.
@@ -238,6 +243,67 @@ fn turntable_rotates_and_fit_moves_the_camera() {
         folder.expect_exit(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out
     };
     assert_ne!(hash("--fit"), hash(""));
+}
+
+#[test]
+fn turntable_rotates_the_camera_of_a_scene() {
+    let folder = TestFolder::new();
+    // A white ball on the left of a black one, around the point (0, 0, -2).
+    let scene = |camera: &str| {
+        format!(
+            "{camera} Background {{ color 0.5 0.5 0.5 ambientLight 1 1 1 }} Lights {{ }} Materials {{ \
+             PhongMaterial {{ diffuseColor 0 0 0 }} \
+             PhongMaterial {{ diffuseColor 1 1 1 }} }} \
+             Group {{ MaterialIndex 0 Sphere {{ center 1 0 -2 radius 0.5 }} \
+             MaterialIndex 1 Sphere {{ center -1 0 -2 radius 0.5 }} }}"
+        )
+    };
+    let pose = "center 0 0 3 direction 0 0 -1 up 0 1 0";
+    for camera in [
+        format!("PerspectiveCamera {{ {pose} angle 40 }}"),
+        format!("OrthographicCamera {{ {pose} size 4 }}"),
+        format!("FisheyeCamera {{ {pose} angle 60 }}"),
+    ] {
+        folder.write("a.txt", scene(&camera));
+        let row = |more: &str| {
+            folder.expect_exit(0, &format!("render a.txt -o a.ppm --size 40x40 --samples 1 -q {more}"));
+            let bytes = std::fs::read(folder.path("a.ppm")).unwrap();
+            let row = bytes.len() - 20 * 3 * 40;
+            (0..40).map(|x| bytes[row + 3 * x]).collect::<Vec<u8>>()
+        };
+        let from_front = row("");
+        let is_white_first = |row: &[u8]| {
+            let place = |value: u8| row.iter().position(|x| *x == value).unwrap();
+            place(255) < place(0)
+        };
+        assert!(is_white_first(&from_front), "{camera}");
+        assert_eq!(row("--turned 0"), from_front, "{camera}");
+        assert!(!is_white_first(&row("--turned 180")), "{camera}");
+        // From the right, the black ball hides the white one.
+        assert!(!row("--turned 90").contains(&255), "{camera}");
+        assert!(!row("--turned 270").contains(&0), "{camera}");
+    }
+    folder.expect_exit(0, &format!("render a.txt -o t.png {SMALL} --turntable 3 -q"));
+    assert!(folder.path("t.0002.png").exists());
+    folder.write("a.txt", scene("PushBroomCamera { start -2 0 3 end 2 0 3 direction 0 0 -1 up 0 1 0 angle 40 }"));
+    folder.expect_failure(2, "render a.txt -o t.png --turned 9", &["`PushBroomCamera` cannot be rotated", "--eye"]);
+}
+
+#[test]
+fn info_describes_the_file_and_not_what_render_adds() {
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
+    let text = folder.expect_exit(0, "info a.stl").out;
+    assert!(text.contains("objects    1: 1 TriangleMesh") && text.contains("light      none in the file"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, "info a.stl --json").out).unwrap();
+    assert_eq!((json["objects"].as_u64(), json["lights"].as_u64()), (Some(1), Some(0)));
+    folder.write("a.xml", XML);
+    let text = folder.expect_exit(0, "info a.xml").out;
+    assert!(!text.contains("none in the file") && text.contains("cameras    "), "{text}");
+    let sky = "Background { sunAltitude 30 sunAzimuth 135 } Lights { }";
+    folder.write("sky.txt", COURSE.replace("Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }", sky) + BALL);
+    let text = folder.expect_exit(0, "info sky.txt").out;
+    assert!(text.contains("sun        30.00 degrees above the horizon, 135.00 degrees clockwise"), "{text}");
 }
 
 #[test]

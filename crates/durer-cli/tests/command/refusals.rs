@@ -131,6 +131,7 @@ fn bad_options_of_render() {
         ("--show depth,color,depth", "twice"),
         ("--show samples --size 5000x5000", "too large"),
         ("--show filter --size 9x9 --zoom 1001", "--zoom"),
+        ("--zoom 2", "magnifies the pictures of --show samples"),
         ("--depth-range 3 3", "--depth-range"),
         ("--depth-range nan 3", "--depth-range"),
         ("--depth-range 3", "--depth-range"),
@@ -271,7 +272,6 @@ fn options_without_effect_are_refused() {
         ("--environment sky.hdr", "environment FILE"),
         ("--variant x", "Materials"),
         ("--at 3", "animation"),
-        ("--turned 90", "durer convert"),
     ] {
         let option = options.split(' ').next().unwrap();
         folder.expect_failure(2, &format!("render scene.txt -o a.png {options}"), &[option, "to models", help]);

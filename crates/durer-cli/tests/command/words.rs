@@ -45,6 +45,7 @@ fn words_are_found_as_people_write_them() {
         ("cube", "\n  Box "),
         ("IES", "PhotometricLight"),
         ("AreaLight", "emissionLuminance"),
+        ("softshadow", "DirectionalLight: spread"),
         ("--all --dialect f04", "PhongMaterial"),
     ] {
         let output = folder.expect_exit(0, &format!("words {asked}")).out;

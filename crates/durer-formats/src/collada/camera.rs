@@ -3,7 +3,8 @@
 use super::document::Element;
 use super::parts::CameraData;
 use super::reader::Reader;
-use durer_diag::{Diagnostic, did_you_mean};
+use crate::camera_choice::{NO_CAMERA, choose_camera};
+use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 use glam::DAffine3;
 
@@ -46,25 +47,15 @@ impl<'r> Reader<'r> {
     /// Sets the camera of the scene to the requested one, or to the first.
     pub fn set_camera(&mut self) {
         let defaults = self.input.scene_defaults;
-        let chosen = match &defaults.camera {
-            None => self.cameras.first(),
-            Some(wanted) => {
-                let by_name = self.cameras.iter().find(|camera| camera.names.contains(wanted));
-                let found = by_name.or_else(|| self.cameras.get(wanted.parse::<usize>().ok()?));
-                if found.is_none() {
-                    let names = || self.cameras.iter().flat_map(|camera| &camera.names).filter(|name| !name.is_empty());
-                    let known = match did_you_mean(wanted, names().map(String::as_str)) {
-                        Some(similar) => format!("did you mean `{similar}`?"),
-                        None if self.cameras.is_empty() => "it has no cameras".into(),
-                        None => format!("the cameras are {}", names().cloned().collect::<Vec<_>>().join(", ")),
-                    };
-                    let error = Diagnostic::error(format!("the scene has no camera `{wanted}`: {known}"));
-                    self.report.push(error.code("no-camera"));
-                }
-                found
-            }
+        let names: Vec<Vec<&str>> =
+            self.cameras.iter().map(|camera| camera.names.iter().map(String::as_str).collect()).collect();
+        let first = |names: &Vec<&str>| names.iter().find(|name| !name.is_empty()).map(ToString::to_string);
+        self.scene.camera_names = names.iter().map(|names| first(names).unwrap_or_default()).collect();
+        let chosen = match choose_camera(&names, defaults.camera.as_deref()) {
+            Ok(Some(index)) => &self.cameras[index],
+            Ok(None) => return,
+            Err(message) => return self.report.push(Diagnostic::error(message).code(NO_CAMERA)),
         };
-        let Some(chosen) = chosen else { return };
         (self.scene.camera, self.scene.camera_span) = (Some(chosen.camera(defaults.aspect)), chosen.at);
     }
 }

@@ -242,6 +242,7 @@ impl SceneGenerator {
             is_lit: false,
             lumens_per_watt: None,
             camera_span: Default::default(),
+            camera_names: Vec::new(),
             background_span: Default::default(),
         }
     }

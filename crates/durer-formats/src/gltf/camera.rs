@@ -3,8 +3,8 @@
 use super::Model;
 use super::json::JsonRef;
 use super::nodes::NodeData;
-use crate::report::range_text;
-use durer_diag::did_you_mean;
+use crate::camera_choice::{NO_CAMERA, choose_camera};
+use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
 use durer_scene::math::{Vec3, fp};
@@ -99,37 +99,28 @@ impl Model<'_> {
         })
     }
 
+    /// Returns the nodes with cameras, in the order of their numbers.
+    fn placed_cameras(&self, order: &[usize], nodes: &[NodeData]) -> Vec<(usize, &CameraData)> {
+        order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?))).collect()
+    }
+
+    /// Returns the names of the cameras of the scene, in the order of their numbers.
+    pub(super) fn camera_names(&self, order: &[usize], nodes: &[NodeData]) -> Vec<String> {
+        let name = |(i, camera): (usize, &CameraData)| {
+            [&nodes[i].name, &camera.name].into_iter().find(|name| !name.is_empty()).cloned().unwrap_or_default()
+        };
+        self.placed_cameras(order, nodes).into_iter().map(name).collect()
+    }
+
     /// Returns the requested camera, or otherwise the first camera of the scene, and the index of
     /// its node.
     pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
-        let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
-        let there: Vec<(usize, &CameraData)> = there.collect();
-        let names = |&(i, camera): &(usize, &CameraData)| [nodes[i].name.clone(), camera.name.clone()];
-        let chosen = match &self.input.scene_defaults.camera {
-            None => there.first(),
-            Some(wanted) => {
-                let by_name = there.iter().find(|camera| names(camera).contains(wanted));
-                let by_number = || wanted.parse().ok().and_then(|number: usize| there.get(number));
-                let index = by_name.or_else(by_number);
-                if index.is_none() {
-                    let all: Vec<String> = there.iter().flat_map(names).filter(|name| !name.is_empty()).collect();
-                    let suggestion = did_you_mean(wanted, all.iter().map(String::as_str));
-                    let known = match (suggestion, all.is_empty()) {
-                        (Some(suggestion), _) => format!("did you mean `{suggestion}`?"),
-                        (None, true) => format!("it has {}", range_text(there.len(), "camera", "cameras")),
-                        (None, false) => format!("the cameras are `{}`", all.join("`, `")),
-                    };
-                    self.report.report(
-                        durer_diag::Diagnostic::error,
-                        "no-camera",
-                        "",
-                        &format!("the scene has no camera `{wanted}`: {known}"),
-                    );
-                }
-                index
-            }
-        };
-        let &(node, camera) = chosen?;
+        let there = self.placed_cameras(order, nodes);
+        let names: Vec<_> = there.iter().map(|&(i, camera)| vec![&*nodes[i].name, &*camera.name]).collect();
+        let chosen = choose_camera(&names, self.input.scene_defaults.camera.as_deref());
+        let refuse = |message: String| self.report.report(Diagnostic::error, NO_CAMERA, "", &message);
+        let index = chosen.map_err(refuse).ok()??;
+        let (node, camera) = there[index];
         let map = maps[node];
         let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
         let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();

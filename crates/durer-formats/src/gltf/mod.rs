@@ -237,7 +237,8 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
         Some((_, node)) => root.report.node(node),
         None => root.span(),
     };
-    let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, ..Scene::default() };
+    let camera_names = model.camera_names(&order, &nodes);
+    let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, camera_names, ..Scene::default() };
     let spanned = |(i, m): (usize, PrincipledMaterial)| Spanned {
         value: Material::Principled(Box::new(m)),
         span: root.report.span(&format!("/materials/{i}")),

@@ -29,6 +29,11 @@ impl Reader<'_> {
     /// Reads the camera, which is the sensor selected by id or number, or otherwise the first
     /// sensor.
     pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
+        let id = |sensor: &Rc<Plugin>| {
+            let ids = self.loader.plugins.iter();
+            ids.clone().find(|(_, plugin)| Rc::ptr_eq(plugin, sensor)).map_or(String::new(), |(id, _)| id.clone())
+        };
+        self.scene.camera_names = sensors.iter().map(id).collect();
         let Some(sensor) = self.chosen(sensors) else { return };
         let report = self.report;
         let (width, height) = self.film(&sensor);

@@ -88,6 +88,8 @@ impl Reader<'_> {
     /// Selects a view by its name or number. The default is the first view.
     fn view(&mut self, views: &[&Setting], zone: &ViewBox, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
+        let named = |i| name(i).map_or(String::new(), |word| word.text.clone());
+        self.scene.camera_names = (0..views.len()).map(named).collect();
         let wanted = match &self.input.scene_defaults.camera {
             None => (!views.is_empty()).then_some(0),
             Some(wanted) => {

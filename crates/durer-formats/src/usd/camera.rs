@@ -5,7 +5,8 @@
 
 use super::reader::{CameraData, Reader};
 use super::stage::Prim;
-use durer_diag::{Diagnostic, did_you_mean};
+use crate::camera_choice::{NO_CAMERA, choose_camera};
+use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use durer_scene::math::fp;
 use glam::{DAffine3, DVec3};
@@ -34,25 +35,13 @@ impl Reader<'_, '_> {
     /// Sets the camera of the scene to the requested one, or to the first.
     pub fn set_camera(&mut self) {
         let defaults = self.stage.files.input.scene_defaults;
-        let chosen = match &defaults.camera {
-            None => self.cameras.first(),
-            Some(wanted) => {
-                let by_name = self.cameras.iter().find(|camera| camera.name == *wanted || camera.path == *wanted);
-                let found = by_name.or_else(|| self.cameras.get(wanted.parse::<usize>().ok()?));
-                if found.is_none() {
-                    let names = || self.cameras.iter().map(|camera| camera.name.as_str());
-                    let known = match did_you_mean(wanted, names()) {
-                        Some(similar) => format!("did you mean `{similar}`?"),
-                        None if self.cameras.is_empty() => "it has no cameras".into(),
-                        None => format!("the cameras are {}", names().collect::<Vec<_>>().join(", ")),
-                    };
-                    let error = Diagnostic::error(format!("the scene has no camera `{wanted}`: {known}"));
-                    self.stage.files.report.push(error.code("no-camera"));
-                }
-                found
-            }
+        self.scene.camera_names = self.cameras.iter().map(|camera| camera.name.clone()).collect();
+        let names: Vec<_> = self.cameras.iter().map(|camera| vec![&*camera.name, &*camera.path]).collect();
+        let chosen = match choose_camera(&names, defaults.camera.as_deref()) {
+            Ok(Some(index)) => &self.cameras[index],
+            Ok(None) => return,
+            Err(message) => return self.stage.files.report.push(Diagnostic::error(message).code(NO_CAMERA)),
         };
-        let Some(chosen) = chosen else { return };
         match chosen.camera(defaults.aspect) {
             Some(camera) => (self.scene.camera, self.scene.camera_span) = (Some(camera), chosen.at),
             None => {

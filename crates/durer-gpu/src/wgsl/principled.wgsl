@@ -68,9 +68,11 @@ fn add_opaque(bsdf: ptr<function, Bsdf>, material: u32, weight: f32) {
             add_lobe(bsdf, Lobe(DIELECTRIC_LOBE, factor, max_component(reflected), none, m.facet_alpha, eta, NONE));
         }
     }
-    let matte = weight * (1.0 - m.tint * reflectance);
+    // The colour of the specular reflection does not change what enters the base.
+    let matte = weight * (1.0 - reflectance);
     let boundary = select(NONE, material, m.boundary_ior != 1.0);
-    add_lobe(bsdf, Lobe(DIFFUSE_LOBE, matte, max_component(matte * m.base), m.base, m.roughness, none, boundary));
+    let factor = vec3<f32>(matte);
+    add_lobe(bsdf, Lobe(DIFFUSE_LOBE, factor, matte * max_component(m.base), m.base, m.roughness, none, boundary));
 }
 
 fn add_principled(bsdf: ptr<function, Bsdf>, part: Part, eta: f32) {

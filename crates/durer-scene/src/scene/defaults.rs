@@ -320,7 +320,7 @@ fn axis(scene: &Scene, sides: &ModelAxes) -> DVec3 {
 }
 
 /// Returns the rotation about an axis by an angle in degrees.
-fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
+pub fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let cross = DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0));

@@ -295,6 +295,10 @@ pub struct Scene {
     /// Span of the camera in the scene file.
     #[serde(skip)]
     pub camera_span: Span,
+    /// Names of the cameras in the file of a model, in the order of their numbers. A camera without
+    /// a name has an empty one.
+    #[serde(skip)]
+    pub camera_names: Vec<String>,
     /// Span of the background in the scene file.
     #[serde(skip)]
     pub background_span: Span,

@@ -80,6 +80,15 @@ pub fn direction([altitude, azimuth]: [f64; 2]) -> Vec3 {
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)
 }
 
+/// Altitude and azimuth in degrees of a direction, of any length. The inverse of [`direction`]; the
+/// azimuth is in [0, 360).
+pub fn angles(direction: Vec3) -> [f64; 2] {
+    let v = direction.as_dvec3();
+    let azimuth = fp::atan2_f64(v.x, -v.z).to_degrees();
+    let altitude = fp::atan2_f64(v.y, (v.x * v.x + v.z * v.z).sqrt()).to_degrees();
+    [altitude, if azimuth < 0.0 { azimuth + 360.0 } else { azimuth }]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,6 +134,10 @@ mod tests {
         let [x, y, z] = direction(morning).to_array();
         assert!(x > 0.9 && y > 0.0 && z.abs() < 0.4);
         assert!((direction([0.0, 0.0]) - Vec3::NEG_Z).length() < 1e-6);
+        for [altitude, azimuth] in [[0.0, 0.0], [35.0, 90.0], [-60.0, 200.0], [1.0, 359.0]] {
+            let found = angles(3.0 * direction([altitude, azimuth]));
+            assert!((found[0] - altitude).abs() < 1e-5 && (found[1] - azimuth).abs() < 1e-5, "{found:?}");
+        }
     }
 
     #[test]

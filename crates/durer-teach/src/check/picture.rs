@@ -5,6 +5,9 @@ use durer_scene::math::Color;
 
 /// Fraction of pixels clipped in all channels above which a picture is mostly white.
 const MAX_WHITE: f32 = 0.5;
+/// Value below which a pixel is nearly black, and fraction of such pixels above which a picture is.
+const NEARLY_BLACK: f32 = 0.05;
+const MAX_DARK: f32 = 0.99;
 /// Fraction of rejected samples above which more than a few pixels are affected.
 const MAX_REJECTED: f64 = 0.001;
 
@@ -14,6 +17,8 @@ const MAX_REJECTED: f64 = 0.001;
 pub enum PictureFault {
     /// The whole picture is black.
     Black,
+    /// Nearly all pixels are so dark that hardly anything can be recognised.
+    Dark,
     /// The whole picture has a single colour.
     OneColor,
     /// Most pixels are brighter than white.
@@ -27,6 +32,7 @@ impl PictureFault {
     pub fn description(self) -> &'static str {
         match self {
             PictureFault::Black => "is completely black",
+            PictureFault::Dark => "is nearly black",
             PictureFault::OneColor => "has only one colour",
             PictureFault::White => "is mostly white",
             PictureFault::NotFinite => "lacks samples that were NaN or infinite",
@@ -45,13 +51,15 @@ pub struct PictureScan {
     pixels: usize,
     /// Number of pixels that are brighter than white.
     clipped: usize,
+    /// Number of pixels that are nearly black.
+    dark: usize,
 }
 
 impl PictureScan {
     /// Creates a scan that has no pixels yet. `exposure` is the factor by which pixel values are
     /// multiplied.
     pub fn new(exposure: f32) -> Self {
-        PictureScan { exposure, first: None, differs: false, pixels: 0, clipped: 0 }
+        PictureScan { exposure, first: None, differs: false, pixels: 0, clipped: 0, dark: 0 }
     }
 
     /// Adds pixels.
@@ -64,6 +72,7 @@ impl PictureScan {
         self.differs = self.differs || pixels.iter().any(differs);
         self.pixels += pixels.len();
         self.clipped += pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
+        self.dark += pixels.iter().filter(|pixel| exposure * pixel.max_element() < NEARLY_BLACK).count();
     }
 
     /// Returns the fault of the pixels added so far, if there is one.
@@ -75,7 +84,11 @@ impl PictureScan {
         if statistics.rejected as f64 > MAX_REJECTED * (statistics.samples + statistics.rejected) as f64 {
             return Some(PictureFault::NotFinite);
         }
-        (self.clipped as f32 > MAX_WHITE * self.pixels as f32).then_some(PictureFault::White)
+        let is_above = |count: usize, fraction: f32| count as f32 > fraction * self.pixels as f32;
+        if is_above(self.dark, MAX_DARK) {
+            return Some(PictureFault::Dark);
+        }
+        is_above(self.clipped, MAX_WHITE).then_some(PictureFault::White)
     }
 }
 
@@ -99,6 +112,8 @@ mod tests {
         assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(PictureFault::OneColor));
         assert_eq!(judged(&[1.5, 2.0, 0.1]), Some(PictureFault::White));
         assert_eq!(judged(&[0.0, 0.5, 1.0]), None);
+        assert_eq!(judged(&[0.0, 0.02, 0.04]), Some(PictureFault::Dark));
+        assert_eq!(judged(&[0.0, 0.02, 0.06]), None);
         // White itself does not count as clipped.
         assert_eq!(judged(&[1.0, 1.0, 0.1]), None);
         // Daylight in cd/m^2 is white without scaling, but it is fine with an exposure.

@@ -156,9 +156,9 @@ options! {
         adaptive: bool = "adaptive", OptionForm::Flag;
         /// Show something else where the camera sees no object: `transparent`, `white`, `black`, an
         /// sRGB colour such as #ffcc00, or a colour as linear light, for example 0.5,0.5,0.5; it is
-        /// part of the picture, so that exposure and tone curve change it. Lighting, reflections and
-        /// refractions do not change. A model without a camera then gets no ground [default: the
-        /// background of the scene]
+        /// part of the picture, so that exposure and tone curve change it. Lighting, reflections
+        /// and refractions do not change. A model without a camera then gets no ground [default:
+        /// the background of the scene]
         background: Backdrop = "background", OptionForm::Value("transparent|COLOR");
         /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");

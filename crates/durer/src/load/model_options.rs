@@ -9,14 +9,11 @@ const PLACE: &str = "place the camera with `--eye X,Y,Z`, `--target X,Y,Z` and `
 /// Reports each option of models that is given with a file in the scene language, which has its own
 /// camera and lights.
 pub(super) fn refuse_for_scene(options: &SceneDefaults, diagnostics: &mut Diagnostics) {
-    let turned = "a scene file has its own camera: convert it with `durer convert` to a glTF file, a model that \
-                  `--turntable` rotates around";
     let rows = [
         (options.view.is_some(), "--view", PLACE),
         (options.fit, "--fit", PLACE),
         (options.camera.is_some(), "--camera", PLACE),
         (options.view_file.is_some(), "--view-file", PLACE),
-        (options.orbit_degrees.is_some(), "--turned` and `--turntable", turned),
         (options.up.is_some(), "--up", "a scene file has no up axis; turn its objects with `Transform`, or the camera"),
         (options.lighting.is_some(), "--studio", "change `Lights` and `Background` in the scene file"),
         (options.environment.is_some(), "--environment", "write `environment FILE` in the scene's `Background`"),
@@ -24,8 +21,7 @@ pub(super) fn refuse_for_scene(options: &SceneDefaults, diagnostics: &mut Diagno
         (options.animation_time.is_some(), "--at", "a scene file has no animation; write one file for each frame"),
     ];
     for (_, name, help) in rows.iter().filter(|(is_given, ..)| *is_given) {
-        let verb = if name.contains(' ') { "apply" } else { "applies" };
-        let message = format!("`{name}` {verb} to models, not to files in the scene language");
+        let message = format!("`{name}` applies to models, not to files in the scene language");
         diagnostics.push(Diagnostic::error(message).code(CODE).help(*help));
     }
 }
@@ -77,7 +73,6 @@ mod tests {
             (SceneDefaults { fit: true, ..none() }, "`--fit`", "--eye"),
             (SceneDefaults { camera: Some("3".into()), ..none() }, "`--camera`", "--target"),
             (SceneDefaults { view_file: Some("a.vf".into()), ..none() }, "`--view-file`", "--eye"),
-            (SceneDefaults { orbit_degrees: Some(90.0), ..none() }, "`--turned` and `--turntable`", "durer convert"),
             (SceneDefaults { up: Some(Axis::Z), ..none() }, "`--up`", "Transform"),
             (SceneDefaults { lighting: Some(DefaultLighting::Sun), ..none() }, "`--studio`", "`Lights`"),
             (SceneDefaults { environment: Some("a.hdr".into()), ..none() }, "`--environment`", "`environment FILE`"),

@@ -172,7 +172,7 @@ pub(super) const LOADING: &[Row] = &[
         "turned",
         OptionForm::Number("DEGREES", f32::is_finite, NUMBER_EXPECTED),
         |options, text| Ok(options.load.scene_defaults.orbit_degrees = text.parse().ok()),
-        "Rotate the camera around the model by this many degrees [default: 0]",
+        "Rotate the camera around the model or scene by this many degrees [default: 0]",
     ),
     row(
         "at",

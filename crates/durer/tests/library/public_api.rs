@@ -3,6 +3,19 @@
 use durer::prelude::*;
 use durer::render::{RenderError, render};
 
+#[test]
+fn mesh_files_are_read_or_refused_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n").unwrap();
+    let error = durer::open_mesh(&path).unwrap_err().to_string();
+    assert!(error.contains("bad.obj:3:"), "{error}");
+    assert!(matches!(durer::open_mesh(folder.path().join("none.ply")), Err(Error::Source(_))));
+    assert!(matches!(durer::open_mesh(folder.path()), Err(Error::Source(_))));
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    assert_eq!(durer::open_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
+}
+
 fn spheres() -> CompiledScene {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::look_at(vec3(0.0, 0.0, 6.0), Vec3::ZERO, 40.0));

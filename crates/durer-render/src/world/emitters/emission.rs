@@ -233,6 +233,14 @@ fn strength(world: &World, light: u32) -> f32 {
     world.lights()[light as usize].inverse_square().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
+impl World {
+    /// True if photons can be of use: at least one bounded object reflects or refracts light into
+    /// single directions.
+    pub fn casts_caustics(&self) -> bool {
+        !targets(self).is_empty()
+    }
+}
+
 /// Returns the bounding spheres of all bounded objects that reflect or refract light into single
 /// directions, ordered by object.
 fn targets(world: &World) -> Vec<PhotonTarget> {
