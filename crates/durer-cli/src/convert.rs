@@ -57,7 +57,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
         let message = format!("`.{ending}` files cannot be written: use .txt or .json for a scene");
         let message = format!(
-            "{message}, .pbrt, .xml or .usda for pbrt, Mitsuba and USD, .gltf or .glb for a model, and .ply, .obj or .stl for meshes"
+            "{message}, .pbrt, .xml or .usda for pbrt, Mitsuba and USD, .gltf or .glb for a model, and .ply, .obj, .stl or .off for meshes"
         );
         return Err(invalid_input(message));
     }
@@ -85,8 +85,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         let (mesh, left_out) = world.ok_or(Failure::Input(None))?.merged_mesh();
         if left_out > 0 {
             let objects = counted(left_out, "object");
-            let message = format!("left out {objects} without triangles: {} can store only meshes", format.name);
-            report::note(&Diagnostic::warning(message));
+            let why = format!("planes and solids have no triangles, and {} stores only triangles", format.name);
+            if mesh.triangles.is_empty() {
+                return Err(invalid_input(format!("there is nothing to write: {why}")));
+            }
+            report::note(&Diagnostic::warning(format!("left out {objects}: {why}")));
         }
         return output::save(&[(&destination, (format.write)(&mesh))], false);
     }

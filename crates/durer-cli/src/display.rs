@@ -27,7 +27,7 @@ pub struct DisplayArgs {
 #[derive(Args, Clone)]
 pub struct ExposureArgs {
     /// Exposure of 8-bit pictures in stops, each of which doubles the brightness; `auto` maps the
-    /// mean luminance to middle grey
+    /// geometric mean of the luminance to middle grey, unless a tenth of the picture would be white
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true, value_parser = exposure)]
     pub exposure: Exposure,
     /// Shutter time of a physical camera in seconds, for example 1/125, for scenes in cd/m^2;

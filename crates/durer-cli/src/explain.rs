@@ -1,6 +1,7 @@
 //! Implements `durer explain`, which explains the colour of a pixel.
 
 mod page;
+mod ray_drawing;
 mod tree_drawing;
 
 use crate::failure::{Failure, from_render_error, invalid_input};
@@ -35,7 +36,7 @@ use std::sync::Arc;
   durer explain scene.txt --pixel 200,150
   durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
   durer explain scene.txt --brightest --html why.html
-  durer explain scene.txt --pixel 200,150 --depth 4 --svg tree.svg
+  durer explain scene.txt --pixel 200,150 --depth 4 --svg tree.svg --rays rays.svg
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
 
 Pass the same options as to `durer render`, because the colour depends on them, except those of the files to write. With one
@@ -63,7 +64,7 @@ pub struct ExplainArgs {
     /// Number of the sample to explain in full [default: the first with the largest weight]
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
-    /// Explain this ray instead of a pixel: origin and direction
+    /// Explain this ray instead of a pixel: origin and direction, of any length
     #[arg(long, value_name = "OX OY OZ DX DY DZ", num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
     pub ray: Option<Vec<f32>>,
     /// Explain the brightest pixel
@@ -86,8 +87,15 @@ pub struct ExplainArgs {
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Draw the tree as an SVG file, for example for slides
-    #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["json", "html"])]
+    #[arg(long, value_name = "FILE.svg", conflicts_with = "json")]
     pub svg: Option<PathBuf>,
+    /// Draw the rays of the tree and the outlines of the objects as an SVG file, from the right
+    /// side of the camera
+    #[arg(long, value_name = "FILE.svg", conflicts_with = "json")]
+    pub rays: Option<PathBuf>,
+    /// Draw --rays from above
+    #[arg(long, requires = "rays")]
+    pub from_above: bool,
 }
 
 /// Splits the numbers of a `--ray`, which are separated by spaces or commas, into separate words
@@ -113,6 +121,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let mut registry = FileRegistry::default();
     let page_file = args.html.as_ref().map(|path| registry.register_output("--html", path)).transpose()?;
     let drawing_file = args.svg.as_ref().map(|path| registry.register_output("--svg", path)).transpose()?;
+    let rays_file = args.rays.as_ref().map(|path| registry.register_output("--rays", path)).transpose()?;
     let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
     let view = ViewArgs { crop: args.crop, show: vec!["color".into()], zoom: None };
     let job = job(&args.job, Some(&view), &compiled.loaded, false)?;
@@ -132,11 +141,6 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Explained::Ray(_) => 0,
     };
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    if let (Some(destination), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(&args.scene, &compiled, &job, &subject, sample, picture, transfer)?;
-        output::save(&[(destination, page.into_bytes())], args.quiet)?;
-        return Ok(());
-    }
     if args.json {
         print_line(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
         return Ok(());
@@ -147,8 +151,27 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Explained::Ray(light) => ray_text(light, &names, &detail),
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
+    let mut written = Vec::new();
+    if let (Some(destination), Some(picture)) = (&page_file, &picture) {
+        let page = page::page(&args.scene, &compiled, &job, &subject, sample, picture, transfer)?;
+        written.push((destination, page.into_bytes()));
+    }
     if let Some(destination) = &drawing_file {
-        return output::save(&[(destination, tree_drawing::tree_svg(&lines, transfer).into_bytes())], args.quiet);
+        written.push((destination, tree_drawing::tree_svg(&lines, transfer).into_bytes()));
+    }
+    if let Some(destination) = &rays_file {
+        let tree = match &subject {
+            Explained::Ray(tree) => Some(&**tree),
+            Explained::Pixel(pixel) => pixel.samples.get(sample).and_then(|sample| sample.light.as_ref()),
+        };
+        let Some(tree) = tree else {
+            return Err(invalid_input("--rays: the camera has no ray in this pixel"));
+        };
+        let drawn = ray_drawing::rays_svg(&compiled.world, &tree.root, args.from_above);
+        written.push((destination, drawn.into_bytes()));
+    }
+    if !written.is_empty() {
+        return output::save(&written, args.quiet);
     }
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
@@ -182,9 +205,12 @@ fn subject(
         (Some(numbers), ..) => {
             let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(invalid_input("--ray needs six numbers")) };
             let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
+            // Like that of a camera ray, the direction is normalized, so that `t` is a distance.
+            let unit = ray.dir.as_dvec3().try_normalize().filter(|_| ray.origin.is_finite());
+            let Some(unit) = unit else {
                 return Err(invalid_input("--ray needs finite numbers and a direction other than 0 0 0"));
-            }
+            };
+            let ray = Ray { dir: unit.as_vec3(), ..ray };
             let world = &compiled.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
             return light

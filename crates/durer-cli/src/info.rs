@@ -66,7 +66,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let bounds = world.bounds();
     let lights = own_lights(loaded, world);
     let sun = loaded.scene.background.sun().map(almanac::angles);
-    let cameras = &loaded.scene.camera_names;
+    let (cameras, animations) = (&loaded.scene.camera_names, &loaded.scene.animations);
     let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
         let scene: serde_json::Value = serde_json::from_str(&durer::format::json::write(&loaded.scene, dialect))?;
@@ -78,6 +78,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "materials": world.materials().len(),
             "lights": lights.len(),
             "cameras": cameras,
+            "animations": animations.iter().map(|(name, seconds)| {
+                serde_json::json!({ "name": name, "seconds": seconds })
+            }).collect::<Vec<_>>(),
             "sun": sun.map(|[altitude, azimuth]| serde_json::json!({ "altitude": altitude, "azimuth": azimuth })),
             "bounds": (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()]),
             "open_edges": surface.map(|surface| surface.open_edges),
@@ -107,6 +110,14 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         let name = |(i, name): (usize, &String)| if name.is_empty() { i.to_string() } else { format!("`{name}`") };
         let names: Vec<String> = cameras.iter().enumerate().map(name).collect();
         print_line(&format!("cameras    {}; choose one with `--camera NAME`", names.join(", ")));
+    }
+    if !animations.is_empty() {
+        let summary = |(i, (name, seconds)): (usize, &(String, f32))| match name.is_empty() {
+            true => format!("{i} ({seconds:.2} s)"),
+            false => format!("`{name}` ({seconds:.2} s)"),
+        };
+        let all: Vec<String> = animations.iter().enumerate().map(summary).collect();
+        print_line(&format!("animations {}; show a moment with `--animation NAME --at SECONDS`", all.join(", ")));
     }
     for light in lights {
         print_line(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
@@ -139,8 +150,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             .objects()
             .iter()
             .any(|object| object.to_world.is_some() && !matches!(object.geometry, Geometry::Mesh(_)));
-        let most = if is_loose { "at most " } else { "" };
-        print_line(&format!("bounds     {most}{} to {}", bounds.min, bounds.max));
+        let note = if is_loose { " or less, because of rotated shapes" } else { "" };
+        print_line(&format!("bounds     {} to {}{note}", bounds.min, bounds.max));
     }
     print_line(&format!(
         "memory     {:.1} MiB: geometry and trees {:.1}, pictures {:.1}",

@@ -19,8 +19,8 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed:
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(invalid_input)
 }
 
-/// Warns if the camera leaves part of the picture empty, if depth of field needs more samples, or
-/// if photons are of no use.
+/// Warns if the camera leaves part of the picture empty, if depth of field needs more samples, if
+/// photons are of no use, or if two integrators compute the pictures.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
@@ -37,6 +37,12 @@ pub fn warn(job: &Job, world: &World) {
         let message = "one sample per pixel uses only the centre of the lens, so everything is in focus; use more \
                        `--samples`, for example 64";
         report::note(&Diagnostic::warning(message));
+    }
+    let shows = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
+    if job.method.path_options().is_none() && shows("illuminance") && (job.color || shows("luminance")) {
+        let method = job.method.name();
+        let message = format!("the illuminance is that of path tracing, and the other pictures are by {method}");
+        report::note(&Diagnostic::warning(message).help("`--integrator path` computes all of them"));
     }
     if matches!(job.method, IntegratorKind::Photons(_)) && !world.casts_caustics() {
         let message = "photons have no effect: no object reflects or refracts light sharply";

@@ -19,15 +19,17 @@ use crate::terminal::print_error_line;
 use clap::{Arg, Args};
 use durer::camera::PerspectiveCamera;
 use durer::daylight;
+use durer::describe::DescribedKind;
 use durer::diag::Diagnostic;
 use durer::image::{Destination, save_all};
 use durer::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSettings};
-use durer::math::{LUMINANCE, Ray64, Vec3};
+use durer::light::{Light, PHOTOMETRIC_FIELDS};
+use durer::math::{Color, LUMINANCE, Ray64, Vec3};
 use durer::measure::{MeasureOptions, Sensor, measure};
 use durer::options::vector;
 use durer::render::Job;
-use durer::scene::Axis;
 use durer::scene::defaults::ModelAxes;
+use durer::scene::{Axis, Scene};
 use durer::threads;
 use durer::world::World;
 use grid::Grid;
@@ -78,7 +80,7 @@ photometric files, a sky), and in Radiance scenes. Irradiance has one value per 
 scenes, else in the unit of the illuminance. Light that arrives from behind the normal is ignored.
 
 The standard errors assume independent samples, so the actual errors are smaller. Lights that only BSDF sampling can find,
-for example in mirrors, increase the standard errors."
+for example in mirrors, increase the standard errors. Light that needs more than --bounces is missing and not part of them."
 )]
 pub struct MeasureArgs {
     #[command(flatten)]
@@ -97,7 +99,8 @@ pub struct MeasureArgs {
     /// Grid of points: a corner, two edges, and the number of points along each edge
     #[arg(id = "grids", long = "grid", value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid::parse, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
-    /// Draw the grid as a plan in false colours with isolux lines in lux, as an SVG file
+    /// Draw the grid as a plan in false colours, with labelled lines of equal illuminance at round
+    /// values, as an SVG file
     #[arg(long, value_name = "FILE.svg", requires = "grids")]
     pub plan: Option<PathBuf>,
     /// Rate the glare for an eye that looks at a point (UGR); can be given several times
@@ -114,7 +117,7 @@ pub struct MeasureArgs {
     #[command(flatten)]
     pub reading: SceneArgs,
     /// Maximum number of scattering events before light reaches the point
-    #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
+    #[arg(long, default_value_t = MAX_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BOUNCES)))]
     pub bounces: u32,
     #[command(flatten)]
     pub method: IntegratorArgs,
@@ -132,6 +135,9 @@ pub struct MeasureArgs {
     pub quiet: bool,
 }
 
+/// Largest number of scattering events, and the default: measured light must not lack what a room
+/// reflects many times. Roulette ends the paths.
+const MAX_BOUNCES: u32 = 256;
 /// Largest allowed number of measuring points.
 const MAX_POINTS: usize = 1 << 20;
 
@@ -155,6 +161,36 @@ fn in_the_air(world: &World, sensors: &[Sensor]) -> Option<Vec3> {
     sensors.iter().find(|sensor| !lies_on_a_surface(sensor)).map(|sensor| sensor.point)
 }
 
+/// Notes which light of a file in the scene language has no photometric unit.
+fn note_units(scene: &Scene, world: &World) {
+    if scene.up.is_some() || world.lumens().is_some() {
+        return;
+    }
+    let has_unit = |light: &Light| {
+        let mut fields = light.fields().iter().enumerate();
+        matches!(light, Light::Photometric(_))
+            || fields.any(|(i, field)| PHOTOMETRIC_FIELDS.contains(&field.name) && light.get(i).is_some())
+    };
+    let plain = scene.lights.iter().flatten().filter(|light| !has_unit(&light.value)).count();
+    if plain > 0 {
+        let message = format!(
+            "{} without a photometric unit (`candela`, `lumens` or `lux`), so that the values are in the scene's own \
+             unit instead of lux",
+            counted_verb(plain)
+        );
+        report::note(&Diagnostic::note(message));
+    }
+    if scene.background_span.has_position() && world.environment().is_none() && world.background() != Color::ZERO {
+        let message = "the colour of the background counts as light; `Background { color 0 0 0 }` has none";
+        report::note(&Diagnostic::note(message));
+    }
+}
+
+/// Returns the beginning of a sentence about this many lights.
+fn counted_verb(count: usize) -> String {
+    if count == 1 { "1 light is".into() } else { format!("{count} lights are") }
+}
+
 /// Options that place the camera, which does not change what is measured.
 const CAMERA: &[&str] = &["view", "eye", "target", "fov", "camera", "view-file", "fit", "turned"];
 
@@ -163,6 +199,7 @@ const CAMERA: &[&str] = &["view", "eye", "target", "fov", "camera", "view-file",
 fn of_measure(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "at" => arg.long("moment"),
+        "integrator" => arg.help("Integrator: path, or photons for light that mirrors and glass focus [default: path]"),
         _ if CAMERA.contains(&&*name_of(arg.get_id())) => arg.hide(true),
         _ => arg,
     }
@@ -204,6 +241,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(invalid_input(format!(
             "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid, or a list with --points"
         )));
+    }
+    if weather.is_none() && !args.quiet {
+        note_units(&compiled.loaded.scene, &compiled.world);
     }
     let mut year = None;
     match (&weather, &args.weather.sky_hour) {

@@ -9,9 +9,13 @@ use std::ffi::OsString;
 /// Options of other programs: their names, the option that a command must have for the hint to
 /// apply, and the hint.
 const HINTS: &[(&[&str], &str, &str)] = &[
-    (&["--width", "--height", "--resolution", "--res", "-size"], "size", "use `--size 640x480`, width first"),
     (
-        &["--spp", "--aa", "--antialias", "--samples-per-pixel"],
+        &["--width", "--height", "--resolution", "--res", "-size", "-w", "-W", "-H"],
+        "size",
+        "use `--size 640x480`, width first",
+    ),
+    (
+        &["--spp", "--aa", "--antialias", "--samples-per-pixel", "-n"],
         "samples",
         "use `--samples 64` for 64 samples per pixel",
     ),
@@ -118,7 +122,10 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
     let similar = || {
         let near = did_you_mean(given.strip_prefix("--")?, command.get_arguments().filter_map(Arg::get_long));
         let list = if has("help-all") { "--help-all" } else { "--help" };
-        let listed = || format!("`durer {} {list}` lists the options", command.get_name());
+        let listed = || match command.get_name() == program.get_name() {
+            true => "`durer --help` lists the commands, and `durer COMMAND --help` their options".into(),
+            false => format!("`durer {} {list}` lists the options", command.get_name()),
+        };
         Some(near.map_or_else(listed, |near| format!("did you mean `--{near}`?")))
     };
     let help = known.map(|row| row.2.to_string()).or_else(|| separate_value(&words, &given));

@@ -12,6 +12,7 @@ use crate::terminal::{print_error_line, print_line};
 use crate::{check, device, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
+use durer::render::explain::explain;
 use durer::render::{
     Backdrop, BandedRender, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard,
     ShardBy, replay,
@@ -88,6 +89,9 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         let message = "`--pixel` prints the colour only";
         let advice = format!("`durer explain --pixel {x},{y}` prints the distance, the normal and more");
         return Err(invalid_input(format!("{message}: {advice}")));
+    }
+    if pixel.is_some() && args.denoise.is_some() {
+        return Err(invalid_input("--denoise needs the whole picture: remove it, or --pixel"));
     }
     // Check that the output can be written before starting the work.
     let mut registry = FileRegistry::default();
@@ -311,10 +315,17 @@ fn replaying(panicked: &Panicked) -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
 }
 
-/// Prints the colour of a pixel or sample for `--pixel`.
+/// Prints the colour of a pixel or sample for `--pixel`. The colour of a pixel is that of the
+/// picture.
 fn print_pixel(world: &World, job: &Job, control: &Control, pixel: Pixel) -> Result<(), Failure> {
     let Pixel { place: (x, y), sample } = pixel;
-    let color = replay(world, job, control, (x, y), sample).map_err(from_render_error)?;
+    // This also repeats a panic outside the samples.
+    let mut color = replay(world, job, control, (x, y), sample).map_err(from_render_error)?;
+    if sample.is_none() {
+        let explain = || explain(world, job, x, y);
+        let explained = durer::threads::install(control.threads, explain).map_err(from_render_error)?;
+        color = (explained.coverage > 0.0).then_some(explained.color);
+    }
     let sample = sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
     let shown = color.map_or("the camera sees nothing there".into(), |c| format!("{:?} {:?} {:?}", c.x, c.y, c.z));
     print_line(&format!("pixel {x},{y}{sample}: {shown}"));

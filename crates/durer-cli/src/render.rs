@@ -46,10 +46,10 @@ pub struct RenderCommand {
     pub render: RenderArgs,
     #[command(flatten)]
     pub frames: FramesArgs,
-    /// Print the colour of one pixel instead of writing a picture
+    /// Print the linear colour of one pixel instead of writing a picture
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<(u32, u32)>,
-    /// Print only this sample of the pixel
+    /// Print the colour of only this sample of the pixel
     #[arg(long, value_name = "NUMBER", requires = "pixel")]
     pub sample: Option<u32>,
 }

@@ -28,6 +28,8 @@ pub struct SceneDefaultsArgs {
     pub fit: bool,
     #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true, help = doc("turned"))]
     pub turned: Option<f32>,
+    #[arg(long, value_name = "NAME", help = doc("animation"))]
+    pub animation: Option<String>,
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help = doc("at"))]
     pub at: Option<f32>,
 }
@@ -117,6 +119,7 @@ impl SceneDefaultsArgs {
             }),
             camera: self.camera.clone(),
             variant: self.variant.clone(),
+            animation: self.animation.clone(),
             animation_time: self.at,
             fit: self.fit,
             orbit_degrees: self.turned,

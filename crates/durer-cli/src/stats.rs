@@ -81,7 +81,8 @@ impl StageTimer {
             }
             let per_sample = time.as_secs_f64() * 1e9 / samples.max(1) as f64;
             print_error_line(&format!("  {per_sample:>12.0}  ns per sample"));
-            let share = 100.0 * intersection_time.as_secs_f64() / time.as_secs_f64().max(1e-9);
+            // The two times are of separate runs.
+            let share = (100.0 * intersection_time.as_secs_f64() / time.as_secs_f64().max(1e-9)).min(100.0);
             print_error_line(&format!("  {share:>12.0}  % of the time in ray traversal"));
         }
         Ok(())

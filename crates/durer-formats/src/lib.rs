@@ -9,7 +9,6 @@
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
-mod camera_choice;
 #[cfg(feature = "collada")]
 mod collada;
 pub mod course;
@@ -31,6 +30,7 @@ mod medium;
 #[cfg(feature = "mitsuba")]
 mod mitsuba;
 mod model;
+mod named_choice;
 mod number;
 pub mod obj;
 mod off;

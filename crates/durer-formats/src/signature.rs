@@ -61,6 +61,13 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         let span = Span { file, start: 0, end: found.length as u32 };
         return Some(Diagnostic::error(message).code("bad-file").at(span).help(found.help));
     }
+    if super::extension(last) == "csv" && extensions.is_empty() {
+        let help = format!(
+            "a measured spectrum belongs in a light or a material: `spectrum {last}`; points to measure are given by \
+             `durer measure SCENE --points {last}`"
+        );
+        return Some(Diagnostic::error(format!("`{last}` is a table and no scene")).code("bad-file").help(help));
+    }
     let stl: (&[u8], &str, Option<&str>) = (b"solid", "STL", Some("stl"));
     let is_stl = super::stl::is_text(bytes);
     let obj: (&[u8], &str, Option<&str>) = (b"v", "Wavefront OBJ", Some("obj"));

@@ -87,6 +87,17 @@ impl Dialect {
     }
 }
 
+/// Ambient light of a scene without lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum AmbientWithoutLights {
+    /// The ambient light of the scene.
+    Own,
+    /// The ambient light of the scene, or 1 1 1 if it is black.
+    WhiteIfBlack,
+    /// 1 1 1, regardless of the value in the scene.
+    White,
+}
+
 /// Method by which a dialect computes normals for meshes without normals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
@@ -233,10 +244,8 @@ pub struct DialectRules {
     /// True if the ambient light is multiplied by a material's texture or noise, instead of only by
     /// its `diffuseColor`.
     pub ambient_textured: bool,
-    /// True if the ambient light of a scene without lights is 1 1 1, regardless of the value in the
-    /// scene.
-    #[serde(rename = "ambient_alone")]
-    pub ambient_without_lights: bool,
+    /// Ambient light of a scene without lights.
+    pub ambient_without_lights: AmbientWithoutLights,
     /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
     /// Quirks of the official program that the dialect reproduces.
@@ -272,6 +281,10 @@ impl DialectRules {
             srgb_textures: true,
             paths: PathBase::SceneFile,
             ambient_textured: true,
+            ambient_without_lights: match self.ambient_without_lights {
+                AmbientWithoutLights::White => ours.ambient_without_lights,
+                other => other,
+            },
             quirks: 0,
             ..self.clone()
         }
@@ -301,7 +314,7 @@ const F04: DialectRules = DialectRules {
     srgb_textures: false,
     paths: PathBase::Current,
     ambient_textured: true,
-    ambient_without_lights: true,
+    ambient_without_lights: AmbientWithoutLights::White,
     transparent_shadows: false,
     quirks: quirk_set(&[
         BlackBacks,
@@ -419,7 +432,7 @@ const F23: DialectRules = DialectRules {
     size: (200, 200),
     mesh_normals: MeshNormals::SmoothByArea,
     falloff: Falloff::InverseSquare(Some(20.0)),
-    ambient_without_lights: false,
+    ambient_without_lights: AmbientWithoutLights::Own,
     paths: PathBase::Assets("assets/assignment4"),
     arithmetic: Arithmetic::Of2020,
     quirks: quirk_set(&[
@@ -467,7 +480,7 @@ const DURER: DialectRules = DialectRules {
     srgb_textures: true,
     paths: PathBase::SceneFile,
     ambient_textured: true,
-    ambient_without_lights: true,
+    ambient_without_lights: AmbientWithoutLights::WhiteIfBlack,
     transparent_shadows: false,
     quirks: 0,
 };

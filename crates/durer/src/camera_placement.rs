@@ -59,8 +59,7 @@ impl CameraPlacement {
 
 /// Rotates the camera of a world counter-clockwise as seen from above by this many degrees. The
 /// vertical axis passes through the point on the camera's line of sight that is beside the center
-/// of the scene. `up` is the up axis of a model; without it, the up direction of the camera is
-/// vertical. The camera keeps its kind.
+/// of the scene. `up` is the up axis of a model. The camera keeps its kind.
 ///
 /// # Errors
 ///
@@ -70,7 +69,7 @@ pub(crate) fn orbit(world: &mut World, up: Option<Axis>, degrees: f32) -> Result
     let pose = camera.pose();
     let [center, direction, own_up] = [pose.center, pose.direction, pose.up].map(Vec3::as_dvec3);
     let forward = direction.normalize_or(DVec3::NEG_Z);
-    let vertical = up.map_or(own_up.normalize_or(DVec3::Y), |up| ModelAxes::new(up).up);
+    let vertical = up.map_or_else(|| vertical(forward, own_up), |up| ModelAxes::new(up).up);
     let bounds = world.bounds();
     let middle = if bounds.is_empty() { center } else { bounds.center().as_dvec3() };
     let pivot = center + (middle - center).dot(forward).max(0.0) * forward;
@@ -88,4 +87,12 @@ pub(crate) fn orbit(world: &mut World, up: Option<Axis>, degrees: f32) -> Result
     }
     world.set_camera(camera);
     Ok(())
+}
+
+/// Returns the vertical of a scene without an up axis, from the view direction and the up direction
+/// of its camera: y, unless the camera is upright along another direction.
+fn vertical(forward: DVec3, up: DVec3) -> DVec3 {
+    let upright = up.reject_from(forward).normalize_or(DVec3::Y);
+    let looks_down = forward.y.abs() > 0.9;
+    if looks_down || upright.y.abs() > 0.1 { DVec3::Y } else { up.normalize_or(DVec3::Y) }
 }

@@ -29,6 +29,15 @@ pub const SYNONYMS: &[(&str, &[&str])] = &[
     ("cube", &["box"]),
     ("cuboid", &["box"]),
     ("size", &["size", "scale"]),
+    ("kelvin", &["illuminant", "kelvin"]),
+    ("color temperature", &["illuminant", "kelvin"]),
+    ("colour temperature", &["illuminant", "kelvin"]),
+    ("temperature", &["illuminant", "kelvin"]),
+    ("cct", &["illuminant", "kelvin"]),
+    ("blackbody", &["illuminant", "kelvin"]),
+    ("watt", &["lumens", "candela"]),
+    ("watts", &["lumens", "candela"]),
+    ("power", &["lumens", "candela", "strength"]),
 ];
 
 /// Terms that concern a command rather than the language, with what to use.
@@ -50,6 +59,14 @@ const TOPICS: &[(&[&str], &str)] = &[
     (
         &["illuminance", "lux", "isolux", "uniformity", "irradiance"],
         "`durer measure` computes it at points and on grids, and `durer render --show illuminance` for each pixel",
+    ),
+    (
+        &["cri", "color rendering", "colour rendering", "color rendering index"],
+        "Dürer has no colour rendering index; `--color spectral` renders measured spectra of lights and surfaces",
+    ),
+    (
+        &["wireframe", "edges"],
+        "`durer render --show barycentric` shows each triangle of a mesh in the colours of its corners",
     ),
     (&["ugr", "glare"], "`durer measure --ugr EYE:TARGET` rates the glare of luminaires for an observer"),
     (

@@ -391,7 +391,10 @@ fn values_of_options_are_not_blamed_on_the_file() {
     let folder = TestFolder::new();
     folder.write("a.txt", with_change(str::to_string));
     let inside = folder.run("check a.txt --eye -1.2,1,0.5").out;
-    assert!(inside.contains("[camera-inside]") && inside.contains("this value comes from `--eye`"), "{inside}");
+    assert!(
+        inside.contains("[camera-inside]") && inside.contains("an option such as `--eye` sets this value"),
+        "{inside}"
+    );
     assert!(inside.contains("`--eye ") && !inside.contains("`center "), "{inside}");
     assert!(!inside.contains("a.txt:1:28"), "{inside}");
     folder.write("a.txt", with_change(|text| text.replacen("center 0 2 9", "center -1.2 1 0.5", 1)));

@@ -25,6 +25,32 @@ fn sum(node: &Value) -> [f32; 3] {
 }
 
 #[test]
+fn pixel_of_render_is_that_of_the_picture() {
+    let folder = TestFolder::new();
+    for options in ["--samples 5", "--samples 1", "--samples 9 --integrator path", "--dialect f04 --filter tent"] {
+        let text = folder.expect_exit(0, &format!("explain scene.txt --pixel 20,15 --json {options} {SMALL}")).out;
+        let json: Value = serde_json::from_str(&text).unwrap();
+        let color: Vec<f32> =
+            json["pixel"]["color"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap() as f32).collect();
+        let shown = folder.expect_exit(0, &format!("render scene.txt --pixel 20,15 {options} {SMALL}")).out;
+        let numbers: Vec<f32> = shown.split_whitespace().skip(2).map(|number| number.parse().unwrap()).collect();
+        assert_eq!(numbers, color, "{options}: {shown}");
+    }
+    folder.expect_failure(2, "render scene.txt --pixel 20,15 --denoise", &["--denoise needs the whole picture"]);
+}
+
+#[test]
+fn direction_of_a_ray_can_have_any_length() {
+    let folder = TestFolder::new();
+    let of = |direction: &str| {
+        folder.expect_exit(0, &format!("explain scene.txt --ray 0,0.2,5,{direction} --dialect f04 {SMALL}")).out
+    };
+    let unit = of("0,-0.6,-0.8");
+    assert!(unit.contains("N = ") && of("0,-6,-8") == unit && of("0,-0.006,-0.008") == unit, "{unit}");
+    folder.expect_failure(2, "explain scene.txt --ray 0,0,5,0,0,0", &["a direction other than 0 0 0"]);
+}
+
+#[test]
 fn tree_is_drawn_as_svg() {
     let folder = TestFolder::new();
     folder.expect_exit(0, &format!("explain scene.txt --pixel 20,15 --svg tree.svg {SMALL}"));
@@ -34,6 +60,15 @@ fn tree_is_drawn_as_svg() {
     // One row is the pixel itself.
     assert!(terms > 3 && drawn.matches("<text").count() == terms + 1, "{text} {drawn}");
     folder.expect_failure(2, "explain scene.txt --pixel 20,15 --svg scene.txt", &["scene.txt"]);
+    // The camera ray and the shadow ray of the light, from the side and from above.
+    let rays = |options: &str| {
+        folder.expect_exit(0, &format!("explain scene.txt --pixel 20,15 --rays rays.svg {options} {SMALL}"));
+        std::fs::read_to_string(folder.path("rays.svg")).unwrap()
+    };
+    let side = rays("");
+    assert!(side.contains(">camera<") && side.contains(">to a light<") && !side.contains(">reflected<"), "{side}");
+    assert_ne!(rays("--from-above"), side);
+    folder.expect_failure(2, "explain scene.txt --pixel 20,15 --from-above", &["--rays"]);
 }
 
 #[test]
@@ -341,7 +376,10 @@ fn numbers_say_where_they_come_from() {
             "0 0 5 0 0 -1",
             &["a t² + 2 b t + c = 0: a = d·d = 1", "c = |o - C|² - r² = 35", "= 5 or 7", "M = (1 0 0 0)"][..],
         ),
-        ("0 0 5 0 -0.5 -1", &["t = (offset - n·o) / n·d = (-1.5 - 0) / -0.5 = 3", "checkerboard: ", "material "]),
+        (
+            "0 0 5 0 -0.5 -1",
+            &["t = (offset - n·o) / n·d = (-1.5 - 0) / -0.4472 = 3.354", "checkerboard: ", "material "],
+        ),
         ("-3.2 0.1 5 0 0 -1", &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the sRGB curve", "· texel (0, 0)"]),
         ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
     ] {

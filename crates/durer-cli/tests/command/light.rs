@@ -288,6 +288,46 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     assert!(!folder.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
+#[test]
+fn units_of_measured_light_are_told() {
+    let folder = TestFolder::new();
+    let scene = |background: &str, light: &str| {
+        let camera = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }";
+        let floor = "Materials { PrincipledMaterial { baseColor 0 0 0 } } \
+                     Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } }";
+        folder.write("a.txt", format!("{camera} Background {{ {background} }} Lights {{ {light} }} {floor}"));
+        folder.expect_exit(0, "measure a.txt --at 0,0,0 --samples 64")
+    };
+    let plain = scene("color 0.5 0.5 0.5", "PointLight { position 0 4 0 color 9 9 9 }");
+    assert!(plain.err.contains("1 light is without a photometric unit"), "{}", plain.err);
+    assert!(plain.err.contains("the colour of the background counts as light"), "{}", plain.err);
+    // A light with a unit needs no colour: 1000 lm are 79.58 cd, which are 4.974 lux at 4 m.
+    let lamp = scene("color 0 0 0", "PointLight { position 0 4 0 lumens 1000 }");
+    assert!(lamp.out.contains("4.97") && !lamp.err.contains("note"), "{} {}", lamp.out, lamp.err);
+    folder.write("b.txt", "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0 0 0 } \
+        Lights { numLights 1 PointLight { position 0 4 0 } } Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } } \
+        Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }");
+    folder.expect_failure(2, "render b.txt --dialect f04", &["`PointLight` has no `color`"]);
+}
+
+#[test]
+fn ambient_light_of_a_scene_without_lights_is_its_own() {
+    let folder = TestFolder::new();
+    let ball = |background: &str| {
+        folder.write(
+            "a.txt",
+            format!(
+                "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} \
+            Background {{ {background} }} Materials {{ PhongMaterial {{ diffuseColor 1 1 1 }} }} \
+            Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
+            ),
+        );
+        folder.expect_exit(0, "render a.txt --pixel 16,16 --size 32x32 --samples 1 --dialect durer").out
+    };
+    assert!(ball("color 0 0 0 ambientLight 0.25 0.25 0.25").contains(": 0.25 0.25 0.25"));
+    assert!(ball("color 0 0 0").contains(": 1.0 1.0 1.0"));
+}
+
 /// A glass ball between a light and a floor.
 const CAUSTIC: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0 0 0 }

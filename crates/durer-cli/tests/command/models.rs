@@ -283,10 +283,34 @@ fn turntable_rotates_the_camera_of_a_scene() {
         assert!(!row("--turned 90").contains(&255), "{camera}");
         assert!(!row("--turned 270").contains(&0), "{camera}");
     }
+    // A camera that looks down rotates about the vertical, too, and keeps its view.
+    folder.write("a.txt", scene("PerspectiveCamera { center 0 5 -2 direction 0 -1 0 up 0 0 -1 angle 40 }"));
+    folder.expect_exit(0, "render a.txt -o a.ppm --size 40x40 --samples 1 -q --turned 90");
+    let bytes = std::fs::read(folder.path("a.ppm")).unwrap();
+    let column: Vec<u8> = (0..40).map(|y| bytes[bytes.len() - (40 - y) * 120 + 60]).collect();
+    assert!(column.contains(&255) && column.contains(&0), "{column:?}");
     folder.expect_exit(0, &format!("render a.txt -o t.png {SMALL} --turntable 3 -q"));
     assert!(folder.path("t.0002.png").exists());
     folder.write("a.txt", scene("PushBroomCamera { start -2 0 3 end 2 0 3 direction 0 0 -1 up 0 1 0 angle 40 }"));
     folder.expect_failure(2, "render a.txt -o t.png --turned 9", &["`PushBroomCamera` cannot be rotated", "--eye"]);
+}
+
+#[test]
+fn shapes_become_triangles_of_mesh_files() {
+    let folder = TestFolder::new();
+    folder.write("a.txt", COURSE.to_string() + BALL);
+    for name in ["a.stl", "a.ply", "a.obj", "a.off"] {
+        folder.expect_exit(0, &format!("convert a.txt -o {name}"));
+        let json = folder.expect_exit(0, &format!("info {name} --json")).out;
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert!((json["area"].as_f64().unwrap() / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{name}: {json}");
+    }
+    folder.write(
+        "b.txt",
+        COURSE.to_string() + &BALL.replace("Sphere { center 0 0 0 radius 1 }", "Plane { normal 0 1 0 offset 0 }"),
+    );
+    folder.expect_failure(2, "convert b.txt -o b.stl", &["nothing to write: planes and solids have no triangles"]);
+    assert!(!folder.path("b.stl").exists());
 }
 
 #[test]

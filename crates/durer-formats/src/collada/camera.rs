@@ -3,7 +3,7 @@
 use super::document::Element;
 use super::parts::CameraData;
 use super::reader::Reader;
-use crate::camera_choice::{NO_CAMERA, choose_camera};
+use crate::named_choice::{NO_CAMERA, choose};
 use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 use glam::DAffine3;
@@ -51,7 +51,7 @@ impl<'r> Reader<'r> {
             self.cameras.iter().map(|camera| camera.names.iter().map(String::as_str).collect()).collect();
         let first = |names: &Vec<&str>| names.iter().find(|name| !name.is_empty()).map(ToString::to_string);
         self.scene.camera_names = names.iter().map(|names| first(names).unwrap_or_default()).collect();
-        let chosen = match choose_camera(&names, defaults.camera.as_deref()) {
+        let chosen = match choose("camera", &names, defaults.camera.as_deref()) {
             Ok(Some(index)) => &self.cameras[index],
             Ok(None) => return,
             Err(message) => return self.report.push(Diagnostic::error(message).code(NO_CAMERA)),

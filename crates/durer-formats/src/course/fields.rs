@@ -7,7 +7,12 @@ use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
+use durer_scene::light::PHOTOMETRIC_FIELDS;
 use durer_scene::math::Vec3;
+
+/// Lights of the course, whose programs need a `color`. In Dürer's own dialect, it is white by
+/// default.
+const LIGHTS: [&str; 2] = ["PointLight", "DirectionalLight"];
 
 /// Order in which the fields of a statement must appear. The order can be free, or it can be the
 /// listed order, which the course's parsers require.
@@ -86,11 +91,17 @@ impl Reader<'_, '_> {
             return;
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };
-        for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
+        let has_unit = || fields.iter().zip(&given).any(|(f, g)| g.is_some() && PHOTOMETRIC_FIELDS.contains(&f.name));
+        let is_required = |f: &Field| {
+            let is_needed = || dialect != Dialect::Durer && f.name == "color" && LIGHTS.contains(&item.own_keyword());
+            f.required || is_needed() && !has_unit()
+        };
+        for (field, _) in fields.iter().zip(&given).filter(|(f, g)| is_required(f) && g.is_none()) {
             // If this dialect has no word for a field, the field has a fixed value. For example,
             // the centre of a sphere in a node is fixed.
             let Some(word) = field.keyword(dialect) else { continue };
-            let alike = || fields.iter().zip(&given).filter(|(f, _)| f.required && f.keyword(dialect) == Some(word));
+            let alike =
+                || fields.iter().zip(&given).filter(|(f, _)| is_required(f) && f.keyword(dialect) == Some(word));
             let (wanted, found) = (alike().count(), alike().filter(|(_, place)| place.is_some()).count());
             let message = match found {
                 0 => format!("`{name}` has no `{word}`"),

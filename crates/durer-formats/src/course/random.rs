@@ -243,6 +243,7 @@ impl SceneGenerator {
             lumens_per_watt: None,
             camera_span: Default::default(),
             camera_names: Vec::new(),
+            animations: Vec::new(),
             background_span: Default::default(),
         }
     }

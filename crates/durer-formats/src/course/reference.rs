@@ -235,7 +235,7 @@ const PRESET: &str = "A real material by name, as the first field of a `Principl
 #[rustfmt::skip]
 const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
     (&[("Lights", set::CLASSIC)], Chapter::Structure, "{ lights }",
-        "The lights. Without any light, the ambient light is 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
+        "The lights. Without any light, an ambient light of 0 0 0 becomes 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
     (&[("Textures", set::DURER)], Chapter::Structure, "{ textures }",
         "Named pictures with their mappings. Materials refer to them by name in place of a file.",
         "Textures { Texture { name bark picture bark.png wrapU mirror } }"),

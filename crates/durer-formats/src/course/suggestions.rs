@@ -160,6 +160,10 @@ pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
         "color" if within("Material") => {
             "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)"
         }
+        "lumens" | "candela" | "lux" | "watts" if within("Material") => {
+            "a surface has an `emissionLuminance` in cd/m^2: the flux in lumens divided by pi and the area, if it shines \
+             to one side"
+        }
         "angle" if within("Orthographic") => "an orthographic camera has a `size`, not an angle",
         "size" if within("Perspective") => "a perspective camera has an `angle`, not a size",
         _ => return None,

@@ -6,9 +6,11 @@
 use super::Model;
 use super::json::JsonRef;
 use super::nodes::NodeData;
+use crate::named_choice::choose;
 use crate::report::count_text;
 use durer_scene::math::fp;
 use glam::{DQuat, DVec3, DVec4};
+use serde_json::Value;
 
 /// Interpolation between the key frames of a glTF animation.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,19 +30,49 @@ struct Sampler {
 }
 
 impl Model<'_> {
-    /// Sets the transforms and weights of the nodes to the values that the first animation has at
-    /// the requested time.
-    pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
-        let (at, animations) = match (self.input.scene_defaults.animation_time, root.get("animations")) {
+    /// Returns the names of the animations and their lengths in seconds.
+    pub(super) fn animations(&self, root: &JsonRef) -> Vec<(String, f32)> {
+        let end_of = |sampler: &Value| {
+            let input = usize::try_from(sampler.get("input")?.as_u64()?).ok()?;
+            root.value.get("accessors")?.get(input)?.get("max")?.get(0)?.as_f64()
+        };
+        let summary = |animation: &Value| {
+            let name = animation.get("name").and_then(Value::as_str).unwrap_or_default().to_string();
+            let samplers = animation.get("samplers").and_then(Value::as_array);
+            (name, samplers.into_iter().flatten().filter_map(end_of).fold(0.0, f64::max) as f32)
+        };
+        root.value.get("animations").and_then(Value::as_array).into_iter().flatten().map(summary).collect()
+    }
+
+    /// Sets the transforms and weights of the nodes to the values that the requested animation, or
+    /// otherwise the first, has at the requested time.
+    pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData], all: &[(String, f32)]) {
+        let defaults = self.input.scene_defaults;
+        let wanted = defaults.animation.as_deref();
+        let (at, animations) = match (defaults.animation_time.or(wanted.map(|_| 0.0)), root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
             (Some(_), None) => {
-                return root.warning("no-animation", "`--at` has no effect, because the file has no animation");
+                let option = if wanted.is_some() { "--animation" } else { "--at" };
+                let message = format!("`{option}` has no effect, because the file has no animation");
+                return root.warning("no-animation", message);
             }
             (None, Some(animations)) => return at_rest(&animations),
             (None, None) => return,
         };
-        let Some(first) = animations.items().next() else { return };
-        let (Some(channels), Some(samplers)) = (first.required("channels"), first.required("samplers")) else { return };
+        let names: Vec<Vec<&str>> = all.iter().map(|(name, _)| vec![&**name]).collect();
+        let chosen = choose("animation", &names, wanted).map_err(|message| root.error("no-animation", message));
+        let Ok(Some(index)) = chosen else { return };
+        let Some(animation) = animations.items().nth(index) else { return };
+        let end = all[index].1;
+        if at > end && end > 0.0 {
+            animation.note(
+                "animations",
+                format!("the animation{} ends after {end} s: its last moment is shown", animation.name()),
+            );
+        }
+        let (Some(channels), Some(samplers)) = (animation.required("channels"), animation.required("samplers")) else {
+            return;
+        };
         let samplers: Vec<Option<Sampler>> = samplers.items().map(|sampler| self.track(&sampler)).collect();
         for channel in channels.items() {
             self.channel(&channel, &samplers, at, nodes);
@@ -154,7 +186,7 @@ fn at_rest(animations: &JsonRef) {
     let moment = match (count, name.is_empty()) {
         (0 | 1, _) => "the first moment of the animation".into(),
         (_, true) => "the first moment of the first animation".into(),
-        (_, false) => format!("the first moment of the first animation,{name}"),
+        (_, false) => format!("the first moment of the first animation,{name}, and `--animation NAME` to show another"),
     };
     let count = count_text(count, "animation", "animations");
     animations.note("animations", format!("the file has {count} and is shown at rest; use `--at 0` to show {moment}"));

@@ -3,7 +3,7 @@
 use super::Model;
 use super::json::JsonRef;
 use super::nodes::NodeData;
-use crate::camera_choice::{NO_CAMERA, choose_camera};
+use crate::named_choice::{NO_CAMERA, choose};
 use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
@@ -117,7 +117,7 @@ impl Model<'_> {
     pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
         let there = self.placed_cameras(order, nodes);
         let names: Vec<_> = there.iter().map(|&(i, camera)| vec![&*nodes[i].name, &*camera.name]).collect();
-        let chosen = choose_camera(&names, self.input.scene_defaults.camera.as_deref());
+        let chosen = choose("camera", &names, self.input.scene_defaults.camera.as_deref());
         let refuse = |message: String| self.report.report(Diagnostic::error, NO_CAMERA, "", &message);
         let index = chosen.map_err(refuse).ok()??;
         let (node, camera) = there[index];

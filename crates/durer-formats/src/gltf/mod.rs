@@ -230,7 +230,11 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
     if root.report.has_errors() {
         return None;
     }
-    model.animate(&root, &mut nodes);
+    let animations = model.animations(&root);
+    model.animate(&root, &mut nodes, &animations);
+    if root.report.has_errors() {
+        return None;
+    }
     let (order, maps) = model.world_transforms(&root, &nodes);
     let camera = model.camera(&order, &nodes, &maps);
     let camera_span = match camera {
@@ -238,7 +242,8 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
         None => root.span(),
     };
     let camera_names = model.camera_names(&order, &nodes);
-    let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, camera_names, ..Scene::default() };
+    let mut scene =
+        Scene { camera: camera.map(|(camera, _)| camera), camera_span, camera_names, animations, ..Scene::default() };
     let spanned = |(i, m): (usize, PrincipledMaterial)| Spanned {
         value: Material::Principled(Box::new(m)),
         span: root.report.span(&format!("/materials/{i}")),

@@ -13,6 +13,7 @@ use durer_scene::shape::MeshData;
 use durer_scene::texture::Channel;
 use std::path::{Path, PathBuf};
 
+mod animation;
 mod places;
 mod vertices;
 
@@ -422,35 +423,6 @@ fn damaged_files_do_not_panic() {
         }
         read(&changed, Path::new("."), "a.gltf", Some(1.0));
     }
-}
-
-#[test]
-fn joints_morph_targets_and_key_frames_move_vertices() {
-    let Some(root) = corpus("khronos") else { return };
-    let at = |name: &str, moment| {
-        let path = root.join(name);
-        let file = path.file_name().unwrap().to_string_lossy().into_owned();
-        let (scene, findings) = read(&std::fs::read(&path).unwrap(), path.parent().unwrap(), &file, moment);
-        scene.unwrap_or_else(|| panic!("{findings:?}"))
-    };
-    let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
-    // The morph targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0). At rest and at
-    // the start of the animation, both weights are 0.
-    let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
-    let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
-    assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
-    assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
-    // The animation makes one turn around z in one second. After a quarter of the turn, the
-    // triangle has rotated by 90 degrees.
-    let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
-    let mut reached = Vec::new();
-    durer_scene::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));
-    assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(0.0, 1.0, 0.0), 1e-5)), "{reached:?}");
-    assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(-1.0, 0.0, 0.0), 1e-5)), "{reached:?}");
-    // A rotating joint moves the upper end of the strip, but not the lower end.
-    let bent = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(1.0)));
-    let straight = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(0.0)));
-    assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
 /// Returns the number of triangles of all meshes, and their bounds and area in world space.

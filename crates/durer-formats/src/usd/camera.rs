@@ -5,7 +5,7 @@
 
 use super::reader::{CameraData, Reader};
 use super::stage::Prim;
-use crate::camera_choice::{NO_CAMERA, choose_camera};
+use crate::named_choice::{NO_CAMERA, choose};
 use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use durer_scene::math::fp;
@@ -37,7 +37,7 @@ impl Reader<'_, '_> {
         let defaults = self.stage.files.input.scene_defaults;
         self.scene.camera_names = self.cameras.iter().map(|camera| camera.name.clone()).collect();
         let names: Vec<_> = self.cameras.iter().map(|camera| vec![&*camera.name, &*camera.path]).collect();
-        let chosen = match choose_camera(&names, defaults.camera.as_deref()) {
+        let chosen = match choose("camera", &names, defaults.camera.as_deref()) {
             Ok(Some(index)) => &self.cameras[index],
             Ok(None) => return,
             Err(message) => return self.stage.files.report.push(Diagnostic::error(message).code(NO_CAMERA)),

@@ -195,7 +195,7 @@ class _Rays:
         self, points: npt.ArrayLike, *, signed: bool = False, threads: Optional[int] = None, progress: Progress = None
     ) -> Doubles:
         """Returns the distance of each point from the surface. If `signed`, distances are negative
-        inside, which needs closed meshes.
+        inside, as defined by `contains`, which needs closed meshes.
 
         >>> mesh.distance([(0, 0, 0), (0, 0, 3)], signed=True)
         array([-1.,  2.])
@@ -265,9 +265,9 @@ class Mesh(_Rays):
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]], preset: Preset = "balanced", **reading: Any) -> Mesh:
         """Reads all meshes of a file as one mesh in world space: OBJ, PLY, STL, OFF, 3MF, glTF,
-        OpenUSD, COLLADA, and any scene that the command reads. Spheres and other shapes that are
-        not meshes are left out with a warning. Options are those of `durer.load`. Raises SceneError
-        with file, line and column if the file is invalid or has no triangles.
+        OpenUSD, COLLADA, and any scene that the command reads. Shapes such as spheres become
+        triangles; planes and solids are left out with a warning. Options are those of `durer.load`.
+        Raises SceneError with file, line and column if the file is invalid or has no triangles.
 
         >>> durer.Mesh.from_file("scenes/meshes/durer-solid.obj").is_closed
         True
@@ -277,7 +277,8 @@ class Mesh(_Rays):
         if len(faces) == 0:
             raise SceneError(f"{os.fspath(path)}: error: no triangles", "[]")
         if left_out:
-            warnings.warn(f"{left_out} objects of {os.fspath(path)} are not meshes and were left out", stacklevel=2)
+            what = f"{left_out} objects of {os.fspath(path)} are planes or solids and were left out"
+            warnings.warn(what, stacklevel=2)
         return cls(corners.reshape(-1, 3), faces.reshape(-1, 3), preset)
 
     def _build(
@@ -382,6 +383,16 @@ class Mesh(_Rays):
         triangles with the same orientation. Corners at the same position count as one. Triangles
         that are not finite are ignored. 0 for a closed mesh, for which `contains` is exact."""
         return open_edges(self._own, self.faces)
+
+    def contains(
+        self, points: npt.ArrayLike, *, threads: Optional[int] = None, progress: Progress = None
+    ) -> Bools:
+        if not self.is_closed:
+            what = f"the mesh has {self.open_edges} open edges, so that its inside is not well defined"
+            warnings.warn(what, stacklevel=2)
+        return super().contains(points, threads=threads, progress=progress)
+
+    contains.__doc__ = _Rays.contains.__doc__
 
     @property
     def is_closed(self) -> bool:

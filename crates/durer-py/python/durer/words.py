@@ -793,7 +793,7 @@ class DirectionalLight(Light):
 
     direction: three numbers, not 0 0 0; required. Direction in which the light travels, of any length.
 
-    color: three numbers; required. Colour and strength.
+    color: three numbers; default 1 1 1. Colour and strength.
 
     spread: number, 0 or more. Angular radius in degrees, for soft shadows and a visible disc in path tracing; 0.27 for the sun.
 
@@ -806,7 +806,7 @@ class DirectionalLight(Light):
         self,
         *,
         direction: npt.ArrayLike,
-        color: npt.ArrayLike,
+        color: Optional[npt.ArrayLike] = None,
         spread: Optional[float] = None,
         lux: Optional[float] = None,
         spectrum: Optional[str] = None,
@@ -825,7 +825,7 @@ class PointLight(Light):
 
     position: three numbers; required. Position.
 
-    color: three numbers; required. Colour and strength.
+    color: three numbers; default 1 1 1. Colour and strength.
 
     attenuation: three numbers. Coefficients of the distance polynomial that the light is divided by: constant, linear and quadratic.
 
@@ -842,7 +842,7 @@ class PointLight(Light):
         self,
         *,
         position: npt.ArrayLike,
-        color: npt.ArrayLike,
+        color: Optional[npt.ArrayLike] = None,
         attenuation: Optional[npt.ArrayLike] = None,
         falloff: Optional[float] = None,
         candela: Optional[float] = None,
@@ -867,7 +867,7 @@ class SpotLight(Light):
 
     direction: three numbers, not 0 0 0; required. Direction of the cone's axis, of any length.
 
-    color: three numbers; required. Colour and strength, as received on the axis at distance 1.
+    color: three numbers; default 1 1 1. Colour and strength, as received on the axis at distance 1.
 
     angle: number, more than 0, at most 180; default 45. Angle in degrees from the axis to the edge of the cone.
 
@@ -887,7 +887,7 @@ class SpotLight(Light):
         *,
         position: npt.ArrayLike,
         direction: npt.ArrayLike,
-        color: npt.ArrayLike,
+        color: Optional[npt.ArrayLike] = None,
         angle: Optional[float] = None,
         inner_angle: Optional[float] = None,
         fade: Optional[Literal["squared", "smooth", "fourth"]] = None,
@@ -967,9 +967,9 @@ class PhongMaterial(Material):
 
     transparent_color: three numbers; default 0 0 0. Weight of the transmitted ray.
 
-    index_of_refraction: number, more than 0. Index of refraction of transmitted rays weighted by `transparentColor` alone.
+    index_of_refraction: number, more than 0. Index of refraction of the transmitted ray. The weights of both rays are the colours, without Fresnel's equations.
 
-    refraction_index: number, 0 or more. Index of refraction of glass that reflects and transmits light by the Fresnel equations; 0 for no glass.
+    refraction_index: number, 0 or more. Index of refraction of glass that reflects more light at grazing angles: in path tracing by Fresnel's equations, in Whitted's method by Schlick's approximation; 0 for no glass.
 
     texture: path. Texture that replaces the diffuse colour where the object has texture coordinates.
 

@@ -3,7 +3,7 @@
 use super::rules::{self, is_nodes};
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::describe::{DescribedKind as _, Value};
-use durer_scene::dialect::{DialectRules, Quirk};
+use durer_scene::dialect::{AmbientWithoutLights, DialectRules, Quirk};
 use durer_scene::light::{Illuminate as _, Light, PHOTOMETRIC_FIELDS};
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Scene;
@@ -23,15 +23,18 @@ pub(super) fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diag
         return (Vec::new(), scene.background.ambient_light);
     }
     if written.is_empty() {
-        let (message, ambient) = match rules.ambient_without_lights {
-            true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
-            false => (
-                "the scene has no lights: only its ambient light is visible, so colours are flat",
-                scene.background.ambient_light,
-            ),
+        let own = scene.background.ambient_light;
+        let ambient = match rules.ambient_without_lights {
+            AmbientWithoutLights::Own => own,
+            AmbientWithoutLights::WhiteIfBlack if own != Color::ZERO => own,
+            AmbientWithoutLights::WhiteIfBlack | AmbientWithoutLights::White => Color::ONE,
+        };
+        let message = match ambient == own {
+            true => "the scene has no lights: only its ambient light is visible, so colours are flat",
+            false => "the scene has no lights: it is shown with an ambient light of 1 1 1, so colours are flat",
         };
         // Scenes of the first assignments have no lights, and their ambient light is 1 1 1.
-        let intended = scene.background.ambient_light == Color::ONE;
+        let intended = own == Color::ONE;
         let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
         return (Vec::new(), ambient);

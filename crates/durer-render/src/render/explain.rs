@@ -119,7 +119,8 @@ impl Explanation {
     }
 }
 
-/// Returns the trace of an arbitrary ray. `id` selects the random numbers.
+/// Returns the trace of a ray whose direction has unit length, like that of a camera ray. `id`
+/// selects the random numbers.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
     trace_tree(&job.integrator(world, None), ray, id)
 }

@@ -3,19 +3,32 @@
 use super::{Geometry, World};
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
+use durer_scene::shape::Shape as _;
 use durer_scene::shape::mesh::NO_INDEX;
+use std::borrow::Cow;
 
 impl World {
-    /// Merges all meshes into one mesh in world space. The result includes the number of objects
-    /// that were left out because they are not meshes.
+    /// Merges all meshes and tessellated shapes into one mesh in world space. The result includes
+    /// the number of objects that were left out because they have no triangles: planes and solids.
     pub fn merged_mesh(&self) -> (MeshData, usize) {
         let (mut all, mut left_out) = (MeshData::default(), 0);
         for object in self.objects() {
-            let Geometry::Mesh(tree) = &object.geometry else {
+            let triangles = match &object.geometry {
+                Geometry::Mesh(tree) => {
+                    let (normals, triangle_normals) = tree.mesh.normals();
+                    Some((tree.mesh.to_data(), Cow::Borrowed(normals), triangle_normals))
+                }
+                Geometry::Primitive(shape) => shape.to_mesh().map(|mut data| {
+                    let normals = std::mem::take(&mut data.normals);
+                    let triangle_normals = std::mem::take(&mut data.triangle_normals);
+                    (Cow::Owned(data), Cow::Owned(normals), Cow::Owned(triangle_normals))
+                }),
+                Geometry::Solid(_) => None,
+            };
+            let Some((data, normals, triangle_normals)) = triangles else {
                 left_out += 1;
                 continue;
             };
-            let (data, (normals, triangle_normals)) = (tree.mesh.to_data(), tree.mesh.normals());
             let point = |p: &Vec3| object.world_point(*p);
             let normal = |n: &Vec3| object.to_world.as_ref().map_or(*n, |to_world| to_world.normal(*n));
             let bases = [&all.positions.len(), &all.uvs.len(), &all.normals.len()].map(|count| *count as u32);

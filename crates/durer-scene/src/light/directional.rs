@@ -13,7 +13,7 @@ described! {
         /// Direction in which the light travels, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Constraint::NonZero, ["direction" in set::ALL];
         /// Colour and strength.
-        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::ALL];
+        color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["color" in set::ALL];
         /// Angular radius in degrees, for soft shadows and a visible disc in path tracing; 0.27 for
         /// the sun.
         spread: Option<f32> = None, optional, Constraint::NonNegative, ["spread" in set::DURER];

@@ -13,7 +13,7 @@ described! {
         /// Position.
         position: Vec3 = Vec3::ZERO, required, Constraint::Any, ["position" in set::CLASSIC];
         /// Colour and strength.
-        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::ALL];
+        color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["color" in set::ALL];
         /// Coefficients of the distance polynomial that the light is divided by: constant, linear
         /// and quadratic.
         attenuation: Option<Vec3> = None, optional, Constraint::Any, ["attenuation" in set::OLD | set::DURER];

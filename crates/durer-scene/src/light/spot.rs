@@ -21,7 +21,7 @@ described! {
         /// Direction of the cone's axis, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Colour and strength, as received on the axis at distance 1.
-        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::DURER];
+        color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["color" in set::DURER];
         /// Angle in degrees from the axis to the edge of the cone.
         angle: f32 = 45.0, optional, Constraint::UpTo(180.0), ["angle" in set::DURER];
         /// Angle in degrees from the axis at which the fade begins; at most `angle`.

@@ -22,10 +22,11 @@ described! {
         reflective_color: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["reflectiveColor" in set::OLD | set::DURER];
         /// Weight of the transmitted ray.
         transparent_color: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["transparentColor" in set::OLD | set::DURER];
-        /// Index of refraction of transmitted rays weighted by `transparentColor` alone.
+        /// Index of refraction of the transmitted ray. The weights of both rays are the colours,
+        /// without Fresnel's equations.
         index_of_refraction: Option<f32> = None, optional, Constraint::Positive, ["indexOfRefraction" in set::OLD | set::DURER];
-        /// Index of refraction of glass that reflects and transmits light by the Fresnel equations;
-        /// 0 for no glass.
+        /// Index of refraction of glass that reflects more light at grazing angles: in path tracing
+        /// by Fresnel's equations, in Whitted's method by Schlick's approximation; 0 for no glass.
         refraction_index: Option<f32> = None, optional, Constraint::NonNegative,
             ["refractionIndex" in set::F12A5 | set::DURER];
         /// Texture that replaces the diffuse colour where the object has texture coordinates.

@@ -79,6 +79,8 @@ pub struct SceneDefaults {
     /// Name of the glTF material variant to use (KHR_materials_variants), or `None` for the default
     /// materials.
     pub variant: Option<String>,
+    /// Name or number of the animation, or `None` for the first.
+    pub animation: Option<String>,
     /// Time of the animation in seconds, or `None` for no animation.
     pub animation_time: Option<f32>,
     /// File of Radiance views, the last of which becomes the camera.

@@ -299,6 +299,9 @@ pub struct Scene {
     /// a name has an empty one.
     #[serde(skip)]
     pub camera_names: Vec<String>,
+    /// Names and lengths in seconds of the animations of a glTF file.
+    #[serde(skip)]
+    pub animations: Vec<(String, f32)>,
     /// Span of the background in the scene file.
     #[serde(skip)]
     pub background_span: Span,

@@ -73,7 +73,8 @@ pub(super) fn blame_options(scene_probe: &SceneProbe, findings: &mut [Finding]) 
             }
             if is_here {
                 (diagnostic.span, diagnostic.label) = (None, String::new());
-                diagnostic.help = Some(format!("this value comes from `{option}`, not from the file: {rewritten}"));
+                diagnostic.help =
+                    Some(format!("an option such as `{option}` sets this value, not the file: {rewritten}"));
             } else {
                 diagnostic.help = Some(rewritten);
             }

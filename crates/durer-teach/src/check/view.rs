@@ -80,6 +80,9 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
                      light"
                 }
                 true => "the object blocks the light, so everything visible is in its shadow",
+                false if shines_outwards(scene_probe, object) => {
+                    "only the inside of the object is visible, and the object shines outwards only"
+                }
                 false => "only the inside of the object is visible",
             })
             .help(match super::extent::times_larger(scene_probe, object) {
@@ -90,12 +93,24 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
                     vector(outside)
                 ),
                 None => {
-                    format!("move the camera backwards out of the object, for example to `center {}`", vector(outside))
+                    let shine = match shines_outwards(scene_probe, object) {
+                        true => ", or let the object shine inwards as well with `walls thin` in its material",
+                        false => "",
+                    };
+                    let place = vector(outside);
+                    format!("move the camera backwards out of the object, for example to `center {place}`{shine}")
                 }
             });
         findings.push(around_camera(scene_probe, object, diagnostic).affecting_whole_picture(true));
     }
     findings
+}
+
+/// Returns true if an object emits light to the outside only.
+fn shines_outwards(scene_probe: &SceneProbe, object: u32) -> bool {
+    let world = scene_probe.world();
+    let material = world.materials().get(world.objects()[object as usize].material as usize);
+    matches!(material, Some(Material::Phong(phong)) if phong.emission.is_some_and(|emission| !emission.two_sided))
 }
 
 /// Returns a note about a camera inside a transparent object, which may be intentional.

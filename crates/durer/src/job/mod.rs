@@ -104,7 +104,7 @@ options! {
     /// assert!(job.set("samples", "0").is_err());
     /// ```
     RenderJob {
-        /// Size in pixels [default: 512x512; with --dialect, that dialect's own default]
+        /// Size in pixels [default: 512x512, or with --dialect the size of the course's program]
         size: (u32, u32) = "size", OptionForm::Value("WIDTHxHEIGHT");
         /// Depths mapped to the two ends of the grey scale [default: the range of depths in the
         /// picture]

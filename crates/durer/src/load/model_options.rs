@@ -18,6 +18,7 @@ pub(super) fn refuse_for_scene(options: &SceneDefaults, diagnostics: &mut Diagno
         (options.lighting.is_some(), "--studio", "change `Lights` and `Background` in the scene file"),
         (options.environment.is_some(), "--environment", "write `environment FILE` in the scene's `Background`"),
         (options.variant.is_some(), "--variant", "a scene file has no variants; change `Materials` in the file"),
+        (options.animation.is_some(), "--animation", "a scene file has no animation; write one file for each frame"),
         (options.animation_time.is_some(), "--at", "a scene file has no animation; write one file for each frame"),
     ];
     for (_, name, help) in rows.iter().filter(|(is_given, ..)| *is_given) {
@@ -31,6 +32,7 @@ pub(super) fn refuse_for_model(format: &str, options: &SceneDefaults, diagnostic
     let rows = [
         (options.camera.is_some(), "--camera", "cameras to choose from", HAVE_CAMERAS),
         (options.variant.is_some(), "--variant", "variants", &["gltf", "usd"]),
+        (options.animation.is_some(), "--animation", "animations to choose from", &["gltf"]),
         (options.animation_time.is_some(), "--at", "animations", &["gltf", "usd"]),
     ];
     for (_, name, what, having) in rows.iter().filter(|(is_given, ..)| *is_given) {
@@ -78,6 +80,7 @@ mod tests {
             (SceneDefaults { environment: Some("a.hdr".into()), ..none() }, "`--environment`", "`environment FILE`"),
             (SceneDefaults { variant: Some("x".into()), ..none() }, "`--variant`", "Materials"),
             (SceneDefaults { animation_time: Some(3.0), ..none() }, "`--at`", "animation"),
+            (SceneDefaults { animation: Some("x".into()), ..none() }, "`--animation`", "one file for each"),
         ] {
             let found = errors("scene.txt", scene, options);
             let [(message, hint)] = &found[..] else { panic!("{option}: {found:?}") };

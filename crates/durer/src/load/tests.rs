@@ -121,7 +121,7 @@ fn missing_lights_materials_and_objects_are_reported() {
     for (text, expected) in [
         (
             text("", &format!("Group {{ MaterialIndex 0 {ball} }}")),
-            vec!["- warning: the scene has no lights: its ambient light is set to 1 1 1, so colours are flat"],
+            vec!["- warning: the scene has no lights: it is shown with an ambient light of 1 1 1, so colours are flat"],
         ),
         (
             text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),

@@ -175,6 +175,12 @@ pub(super) const LOADING: &[Row] = &[
         "Rotate the camera around the model or scene by this many degrees [default: 0]",
     ),
     row(
+        "animation",
+        OptionForm::Value("NAME"),
+        |options, text| Ok(options.load.scene_defaults.animation = Some(text.into())),
+        "Animation of a glTF file, by its name or by its number from 0 [default: the first]",
+    ),
+    row(
         "at",
         OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "expected seconds, 0 or more"),
         |options, text| Ok(options.load.scene_defaults.animation_time = text.parse().ok()),

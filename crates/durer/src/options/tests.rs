@@ -14,7 +14,7 @@ fn every_option_can_be_set_and_is_stated_once() {
         assert_eq!(all.iter().filter(|other| other.name == option.name).count(), 1, "{}", option.name);
         assert!(option.help.len() > 10, "{}", option.name);
         let error = set(option.name, "\u{1}").err();
-        let free = ["assets", "environment", "view-file", "camera", "variant"].contains(&option.name);
+        let free = ["assets", "environment", "view-file", "camera", "variant", "animation"].contains(&option.name);
         assert_eq!(error.is_none(), free, "{}: {error:?}", option.name);
         assert!(error.is_none_or(|error| error.starts_with(&format!("--{} ", option.name))), "{}", option.name);
         if let Some(word) = option.words.first() {

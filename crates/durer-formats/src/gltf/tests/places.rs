@@ -111,7 +111,7 @@ fn animations_not_shown_are_noted() {
         "the file has 1 animation and is shown at rest; use `--at 0` to show the first moment of the animation";
     assert!(animated(&["Walk"]).ends_with(&format!("note /animations: {expected}")), "{}", animated(&["Walk"]));
     let expected = "the file has 2 animations and is shown at rest; use `--at 0` to show the first moment of the first \
-                    animation, `Walk`";
+                    animation, `Walk`, and `--animation NAME` to show another";
     assert!(animated(&["Walk", "Run"]).ends_with(expected));
 }
 

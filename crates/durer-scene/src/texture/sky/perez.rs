@@ -125,8 +125,9 @@ impl Perez {
         let z = angle(sun.y).max(MIN_ZENITH);
         let (direct, diffuse) = (light.direct_normal.max(0.0), light.diffuse_horizontal.max(0.0));
         let cubed = 1.041 * z * z * z;
-        let clearness = if diffuse > 0.0 { ((diffuse + direct) / diffuse + cubed) / (1.0 + cubed) } else { 1.0 };
-        let clearness = clearness.min(MAX_CLEARNESS);
+        // Without diffuse light, a sky with sunlight is as clear as possible.
+        let ratio = if direct > 0.0 { (diffuse + direct) / diffuse } else { 1.0 };
+        let clearness = ((ratio + cubed) / (1.0 + cubed)).min(MAX_CLEARNESS);
         let air_mass = 1.0 / (fp::cos(z) + 0.15 * fp::pow(93.885 - z.to_degrees(), -1.253));
         let brightness =
             (diffuse * air_mass / (SOLAR_CONSTANT * light.eccentricity)).clamp(BRIGHTNESS[0], BRIGHTNESS[1]);

@@ -1,4 +1,4 @@
-//! Choice of one of the cameras of a model by its name or number.
+//! Choice of a part of a model, such as one of its cameras, by name or number.
 
 use crate::report::range_text;
 use durer_diag::did_you_mean;
@@ -6,13 +6,14 @@ use durer_diag::did_you_mean;
 /// Code of the error for a camera that the file does not have.
 pub const NO_CAMERA: &str = "no-camera";
 
-/// Returns the index of the requested camera, or of the first camera if none is requested. `names`
-/// are the names of each camera, of which some can be empty.
+/// Returns the index of the requested part, or of the first if none is requested. `what` is the
+/// kind of the parts in the singular, and `names` are the names of each part, of which some can be
+/// empty.
 ///
 /// # Errors
 ///
-/// Returns a message that names similar or all cameras if there is no such camera.
-pub fn choose_camera(names: &[Vec<&str>], wanted: Option<&str>) -> Result<Option<usize>, String> {
+/// Returns a message that names a similar part or all parts if there is no such part.
+pub fn choose(what: &str, names: &[Vec<&str>], wanted: Option<&str>) -> Result<Option<usize>, String> {
     let Some(wanted) = wanted else { return Ok((!names.is_empty()).then_some(0)) };
     let by_name = names.iter().position(|names| names.contains(&wanted));
     let by_number = || wanted.parse().ok().filter(|number| *number < names.len());
@@ -22,9 +23,8 @@ pub fn choose_camera(names: &[Vec<&str>], wanted: Option<&str>) -> Result<Option
     let all: Vec<&str> = names.iter().flatten().copied().filter(|name| !name.is_empty()).collect();
     let known = match did_you_mean(wanted, all.iter().copied()) {
         Some(similar) => format!("did you mean `{similar}`?"),
-        None if names.is_empty() => "it has no cameras".into(),
-        None if all.is_empty() => format!("it has {}", range_text(names.len(), "camera", "cameras")),
-        None => format!("the cameras are `{}`", all.join("`, `")),
+        None if all.is_empty() => format!("it has {}", range_text(names.len(), what, &format!("{what}s"))),
+        None => format!("the {what}s are `{}`", all.join("`, `")),
     };
-    Err(format!("the scene has no camera `{wanted}`: {known}"))
+    Err(format!("the scene has no {what} `{wanted}`: {known}"))
 }
