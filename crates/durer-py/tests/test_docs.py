@@ -57,13 +57,16 @@ def test_mesh_from_file(scenes, tmp_path):
     assert mesh.is_closed and len(mesh.faces) > 8
     (tmp_path / "two.txt").write_text(
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }"
-        "Group { Sphere { center 0 0 0 radius 1 } Triangle { vertex0 0 0 0 vertex1 1 0 0 vertex2 0 1 0 } }"
+        "Group { Sphere { center 0 0 0 radius 1 } Plane { normal 0 1 0 offset -1 } }"
     )
+    with pytest.warns(UserWarning, match="1 objects of .*two.txt are planes or solids"):
+        ball = durer.Mesh.from_file(tmp_path / "two.txt")
+    assert ball.is_closed and ball.volume == pytest.approx(4 / 3 * np.pi, rel=0.01)
     with pytest.raises(durer.SceneError, match="no triangles"):
-        (tmp_path / "ball.txt").write_text(
-            "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Group { Sphere { center 0 0 0 radius 1 } }"
+        (tmp_path / "plane.txt").write_text(
+            "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Group { Plane { normal 0 1 0 offset 0 } }"
         )
-        durer.Mesh.from_file(tmp_path / "ball.txt")
+        durer.Mesh.from_file(tmp_path / "plane.txt")
     with pytest.raises(FileNotFoundError):
         durer.Mesh.from_file(tmp_path / "missing.obj")
 
@@ -71,7 +74,7 @@ def test_mesh_from_file(scenes, tmp_path):
 def test_measured_light_equals_the_closed_form():
     lit = durer.World.from_text(
         "PerspectiveCamera { center 0 1 5 direction 0 0 -1 up 0 1 0 angle 40 }"
-        "Lights { PointLight { position 0 2 0 color 1 1 1 candela 1000 } }"
+        "Lights { PointLight { position 0 2 0 candela 1000 } }"
         "Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } }"
         "Group { MaterialIndex 0 Rectangle { corner -9 0 -9 edge0 0 0 18 edge1 18 0 0 } }"
     )

@@ -10,6 +10,8 @@ use std::fmt::Write;
 /// Larger side of the drawing and its margin, in pixels.
 const SIZE: f32 = 800.0;
 const MARGIN: f32 = 30.0;
+/// Width of the legend on the left, in pixels.
+const LEGEND: f32 = 130.0;
 /// Names and colours of the kinds of rays, in the order of the legend.
 const KINDS: [(&str, &str); 6] = [
     ("camera", "#1c7ed6"),
@@ -33,7 +35,10 @@ struct Segment {
 /// camera, or from above.
 pub fn rays_svg(world: &World, root: &TraceNode, from_above: bool) -> String {
     let frame = world.camera_frame();
-    let (across, upwards) = if from_above { (frame.right, frame.forward) } else { (frame.forward, frame.up) };
+    // The ground is level, even if the camera looks down.
+    let upright = [Vec3::Y, Vec3::Z].into_iter().find(|axis| frame.up.dot(*axis).abs() > 0.3).unwrap_or(frame.up);
+    let ahead = frame.forward.reject_from(upright).normalize_or(frame.forward);
+    let (across, upwards) = if from_above { (frame.right, ahead) } else { (ahead, upright) };
     let mut segments = Vec::new();
     add_rays(root, &mut segments);
     let flat = |p: Vec3| Vec2::new((p - frame.eye).dot(across), -(p - frame.eye).dot(upwards));
@@ -50,9 +55,9 @@ pub fn rays_svg(world: &World, root: &TraceNode, from_above: bool) -> String {
     let scale = (SIZE - 2.0 * MARGIN) / size.max_element().max(1e-6);
     // A drawing of a single ray along an axis is not flat.
     let sides = (scale * size + 2.0 * MARGIN).max(Vec2::splat(0.4 * SIZE));
-    let middle = 0.5 * (sides - scale * size);
-    let place = |p: Vec3| scale * (flat(p) - low) + middle;
-    let (width, height) = (sides.x.round(), sides.y.round());
+    let corner = 0.5 * (sides - scale * size) + Vec2::new(LEGEND, 0.0);
+    let place = |p: Vec3| scale * (flat(p) - low) + corner;
+    let (width, height) = ((LEGEND + sides.x).round(), sides.y.round());
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
          height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
