@@ -182,7 +182,7 @@ fn own_lights<'w>(loaded: &LoadedScene, world: &'w World) -> &'w [Light] {
 }
 
 /// Counts the traversal steps of camera rays in a low-resolution picture.
-fn rays(world: &World) -> TraversalStats {
+pub fn rays(world: &World) -> TraversalStats {
     const SIDE: u32 = 64;
     let (raster, mut counts) = (raster(world, SIDE, SIDE), TraversalStats::default());
     let pixels = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));

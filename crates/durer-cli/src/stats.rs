@@ -1,6 +1,7 @@
 //! Implements `--stats`, which prints the times and ray counts of a render or writes them as JSON.
 
 use crate::failure::{Failure, from_render_error};
+use crate::info;
 use crate::terminal::print_error_line;
 use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
@@ -72,6 +73,15 @@ impl StageTimer {
             "  {:>12.2}  million per second",
             statistics.rays as f64 / rendering.max(1e-9) / 1e6
         ));
+        let camera_rays = info::rays(world);
+        if camera_rays.rays > 0 {
+            let per_ray = |count: u64| count as f64 / camera_rays.rays as f64;
+            let (nodes, tests) = (per_ray(camera_rays.nodes), per_ray(camera_rays.primitive_tests));
+            print_error_line(&format!(
+                "  {tests:>12.1}  tests and {nodes:.1} nodes for each of {} camera rays",
+                camera_rays.rays
+            ));
+        }
         if let Some(Profile { samples, rays, time, intersection_time }) =
             profile(world, part.job(), SAMPLES).map_err(from_render_error)?
         {

@@ -284,6 +284,9 @@ fn options_without_effect_are_refused() {
     folder.expect_failure(2, "render scene.txt --json", &["--stats=FILE.json"]);
     folder.expect_failure(2, "render scene.txt --stats=a.txt", &["must end in .json"]);
     folder.expect_exit(0, "render scene.txt -o a.png --size 16x12 --stats=a.json");
+    // Without a tree, each ray tests both objects.
+    let statistics = folder.expect_exit(0, "render scene.txt -o b.png --size 16x12 --accel none --stats").err;
+    assert!(statistics.contains("2.0  tests and 0.0 nodes for each of 4096 camera rays"), "{statistics}");
     folder.expect_failure(2, "compare a.png -", &["reads files only"]);
     let statistics: serde_json::Value = serde_json::from_slice(&folder.bytes("a.json")).unwrap();
     assert!(statistics["rays"].as_u64().unwrap() > 100 && statistics["seconds"]["rendering"].is_f64(), "{statistics}");
