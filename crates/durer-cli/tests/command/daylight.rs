@@ -50,6 +50,19 @@ fn figures_of_a_year_are_printed_as_csv_and_json() {
 }
 
 #[test]
+fn sunlight_without_diffuse_light_is_that_of_a_clear_sky() {
+    let folder = field();
+    let mean = |diffuse: &str| {
+        folder.write("day.epw", day().replace(",400,100,", &format!(",900,{diffuse},")));
+        let json = folder.expect_exit(0, &format!("{MEASURE} --at 0,0,0 --json")).out;
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        json["points"][0]["mean"].as_f64().unwrap()
+    };
+    let (none, little) = (mean("0"), mean("1"));
+    assert!(none > 30_000.0 && (none / little - 1.0).abs() < 0.01, "{none} {little}");
+}
+
+#[test]
 fn hours_and_plans_are_written() {
     let folder = field();
     let grid = format!("{MEASURE} --grid -1,0,-1:2,0,0:0,0,2:3x2");
