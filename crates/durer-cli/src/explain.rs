@@ -147,7 +147,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let max_depth = args.depth.map_or(usize::MAX, |depth| depth as usize);
     let detail = ExplainOptions { min_share: (args.min / 100.0) as f32, max_depth, transfer };
-    let lines = match &subject {
+    let lines = || match &subject {
         Explained::Ray(light) => ray_text(light, &names, &detail),
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
@@ -157,7 +157,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         written.push((destination, page.into_bytes()));
     }
     if let Some(destination) = &drawing_file {
-        written.push((destination, tree_drawing::tree_svg(&lines, transfer).into_bytes()));
+        written.push((destination, tree_drawing::tree_svg(&lines(), transfer).into_bytes()));
     }
     if let Some(destination) = &rays_file {
         let tree = match &subject {
@@ -174,7 +174,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         return output::save(&written, args.quiet);
     }
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    lines.iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
+    lines().iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
     if let Explained::Pixel(pixel) = &subject
         && job.method.is_stochastic()
     {
@@ -205,7 +205,7 @@ fn subject(
         (Some(numbers), ..) => {
             let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(invalid_input("--ray needs six numbers")) };
             let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            // Like that of a camera ray, the direction is normalized, so that `t` is a distance.
+            // Normalize the direction, as for camera rays, so that `t` is a distance.
             let unit = ray.dir.as_dvec3().try_normalize().filter(|_| ray.origin.is_finite());
             let Some(unit) = unit else {
                 return Err(invalid_input("--ray needs finite numbers and a direction other than 0 0 0"));

@@ -174,9 +174,10 @@ fn note_units(scene: &Scene, world: &World) {
     let plain = scene.lights.iter().flatten().filter(|light| !has_unit(&light.value)).count();
     if plain > 0 {
         let message = format!(
-            "{} without a photometric unit (`candela`, `lumens` or `lux`), so that the values are in the scene's own \
+            "{} {} without a photometric unit (`candela`, `lumens` or `lux`), so that the values are in the scene's own \
              unit instead of lux",
-            counted_verb(plain)
+            report::counted(plain, "light"),
+            if plain == 1 { "is" } else { "are" }
         );
         report::note(&Diagnostic::note(message));
     }
@@ -184,11 +185,6 @@ fn note_units(scene: &Scene, world: &World) {
         let message = "the colour of the background counts as light; `Background { color 0 0 0 }` has none";
         report::note(&Diagnostic::note(message));
     }
-}
-
-/// Returns the beginning of a sentence about this many lights.
-fn counted_verb(count: usize) -> String {
-    if count == 1 { "1 light is".into() } else { format!("{count} lights are") }
 }
 
 /// Options that place the camera, which does not change what is measured.

@@ -17,6 +17,16 @@ pub fn round_step(step: f64) -> f64 {
     }
 }
 
+/// Returns the beginning of a drawing with a white background. The sizes are in pixels, and `font`
+/// is a family of fonts.
+pub fn opening(width: f64, height: f64, font: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"{font}\" font-size=\"13\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
+    )
+}
+
 /// Escapes text for SVG, and replaces control characters by spaces.
 pub fn escape(text: &str) -> String {
     let visible = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>();

@@ -47,12 +47,12 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
         all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
     if begun.is_empty() && in_blocks.is_empty() {
         let term = &with_spaces(word);
-        let found = mentions(&all, term);
-        if let Some(usage) = topic(term) {
+        let (found, usage) = (mentions(&all, term), topic(term));
+        if let Some(usage) = usage {
             print_line(&format!("`{word}` is not a word of the language: {usage}."));
         }
         if !found.is_empty() {
-            match topic(term) {
+            match usage {
                 Some(_) => print_line("\nThese words are about it:"),
                 None => print_line(&format!("`{word}` is not a word of the language. These words are about it:")),
             }
@@ -62,7 +62,7 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
             }
             print_line("\n`durer words WORD` describes a word and its fields.");
         }
-        if !found.is_empty() || topic(term).is_some() {
+        if !found.is_empty() || usage.is_some() {
             return Ok(());
         }
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));

@@ -1,5 +1,6 @@
 //! Drawing of `durer explain --rays`.
 
+use crate::svg::opening;
 use durer::integrator::TraceNode;
 use durer::integrator::trace::{RayKind, RayRecord, Shadow, TermKind};
 use durer::math::{Aabb, Vec2, Vec3};
@@ -57,12 +58,7 @@ pub fn rays_svg(world: &World, root: &TraceNode, from_above: bool) -> String {
     let sides = (scale * size + 2.0 * MARGIN).max(Vec2::splat(0.4 * SIZE));
     let corner = 0.5 * (sides - scale * size) + Vec2::new(LEGEND, 0.0);
     let place = |p: Vec3| scale * (flat(p) - low) + corner;
-    let (width, height) = ((LEGEND + sides.x).round(), sides.y.round());
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
-    );
+    let mut svg = opening(f64::from(LEGEND + sides.x).round(), f64::from(sides.y).round(), "sans-serif");
     for outline in object_outlines(world).flatten() {
         let path: Vec<Vec2> = outline.into_iter().map(place).collect();
         path.windows(2).for_each(|pair| line(&mut svg, pair[0], pair[1], "stroke=\"#ced4da\""));

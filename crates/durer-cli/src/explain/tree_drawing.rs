@@ -1,7 +1,7 @@
 //! Drawing of `durer explain --svg`.
 
 use super::percentage;
-use crate::svg::escape;
+use crate::svg::{escape, opening};
 use durer::image::Transfer;
 use durer::render::explain::{TextLine, number};
 
@@ -20,11 +20,7 @@ pub fn tree_svg(lines: &[TextLine], transfer: Transfer) -> String {
     let rows: Vec<(&TextLine, String)> = lines.iter().filter_map(|line| Some((line, label(line)?))).collect();
     let right = rows.iter().map(|(line, text)| INDENT * line.depth + 2 * SWATCH + LETTER * text.chars().count());
     let (width, height) = (2 * MARGIN + right.max().unwrap_or(0), 2 * MARGIN + ROW * rows.len());
-    let mut drawn = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"monospace\" font-size=\"13\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
-    );
+    let mut drawn = opening(width as f64, height as f64, "monospace");
     for (i, (line, text)) in rows.iter().enumerate() {
         let (x, y) = (MARGIN + INDENT * line.depth, MARGIN + ROW * i);
         if let Some(parent) = rows[..i].iter().rposition(|(other, _)| other.depth < line.depth) {
