@@ -359,9 +359,8 @@ impl<'a> Tables<'a> {
     }
 
     fn reference(&self, at: &mut Cursor<'a>, depth: u32) -> Result<Reference, String> {
-        let reference = self.target(at)?;
-        // Time offset and scale.
-        at.take(16)?;
+        let mut reference = self.target(at)?;
+        reference.is_retimed = retimed(at)?;
         let count = at.count(12)?;
         for _ in 0..count {
             at.u32()?;
@@ -372,10 +371,8 @@ impl<'a> Tables<'a> {
     }
 
     fn payload(&self, at: &mut Cursor<'a>) -> Result<Reference, String> {
-        let reference = self.target(at)?;
-        if self.version >= 8 {
-            at.take(16)?;
-        }
+        let mut reference = self.target(at)?;
+        reference.is_retimed = self.version >= 8 && retimed(at)?;
         Ok(reference)
     }
 
@@ -383,8 +380,13 @@ impl<'a> Tables<'a> {
         let asset = self.string(at.u32()?)?.to_string();
         let path = at.u32()?;
         let prim = self.path(path).unwrap_or_default().to_string();
-        Ok(Reference { asset, prim: if prim == "/" { String::new() } else { prim } })
+        Ok(Reference { asset, prim: if prim == "/" { String::new() } else { prim }, is_retimed: false })
     }
+}
+
+/// Reads a time offset and scale, and returns true if they change times.
+fn retimed(at: &mut Cursor) -> Result<bool, String> {
+    Ok([at.f64()?, at.f64()?] != [0.0, 1.0])
 }
 
 impl Tables<'_> {

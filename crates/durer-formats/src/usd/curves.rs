@@ -68,7 +68,7 @@ impl Reader<'_, '_> {
         if data.triangles.is_empty() {
             return;
         }
-        let material = self.material_of(prim, here.material.as_deref(), at);
+        let material = self.material_of(prim, here, at);
         let node = self.scene.add_mesh(&prim.path, Arc::new(data), at);
         self.add(node, material, here.to_world, at, objects);
     }

@@ -1,5 +1,6 @@
 //! Point instancers: many copies of a few prototypes.
 
+use super::primvar::{DISPLAY_COLOR, Interpolation, Primvar};
 use super::reader::{Inherited, Reader};
 use super::stage::Prim;
 use durer_scene::scene::{Group, Object, ObjectKind};
@@ -12,8 +13,14 @@ impl Reader<'_, '_> {
         let numbers = |name: &str| prim.numbers(self.stage, name);
         let (positions, indices) = (numbers("positions"), numbers("protoIndices"));
         let (turns, scales) = (numbers("orientations"), numbers("scales"));
-        let (ids, hidden) = (numbers("ids"), numbers("invisibleIds"));
-        let hidden: std::collections::HashSet<u64> = hidden.iter().map(|id| id.to_bits()).collect();
+        let (ids, inactive) = (numbers("ids"), prim.numbers_of("inactiveIds"));
+        let hidden = numbers("invisibleIds").into_iter().chain(inactive);
+        let hidden: std::collections::HashSet<u64> = hidden.map(f64::to_bits).collect();
+        let colors = Primvar::read(self.stage, prim, DISPLAY_COLOR, 3, Interpolation::Constant);
+        if colors.is_some_and(|colors| colors.interpolation != Interpolation::Constant) {
+            let message = "the display colours of a PointInstancer have no counterpart: they are left out";
+            files.report.unsupported_once(at, message);
+        }
         let paths = prim.targets("prototypes");
         let mut prototypes = Vec::with_capacity(paths.len());
         for path in &paths {
@@ -24,8 +31,7 @@ impl Reader<'_, '_> {
             };
             let before = files.limits.object_count();
             let mut parts = Vec::new();
-            let start =
-                Inherited { to_world: DAffine3::IDENTITY, material: here.material.clone(), ..Inherited::default() };
+            let start = Inherited { to_world: DAffine3::IDENTITY, skeleton: Default::default(), ..here.clone() };
             self.visit(&prototype, &start, &mut parts, depth + 1);
             let count = files.limits.object_count() - before;
             prototypes.push((!parts.is_empty()).then_some((parts, count)));

@@ -110,8 +110,8 @@ impl<T: Clone + PartialEq> ListEdit<T> {
         list.retain(|item| !self.deleted.contains(item));
         list.retain(|item| !self.prepended.contains(item));
         list.splice(0..0, self.prepended.iter().cloned());
-        let added: Vec<T> = self.appended.iter().filter(|item| !list.contains(item)).cloned().collect();
-        list.extend(added);
+        list.retain(|item| !self.appended.contains(item));
+        list.extend(self.appended.iter().cloned());
     }
 }
 
@@ -122,7 +122,12 @@ pub(super) struct Reference {
     pub asset: String,
     /// Path of the prim; empty for the layer's default prim.
     pub prim: String,
+    /// True if the times of the layer are moved or scaled.
+    pub is_retimed: bool,
 }
+
+/// Field of a layer that is true if the times of a sublayer are moved or scaled.
+pub(super) const RETIMED: &str = "durer:retimed";
 
 /// Meaning of a prim in its layer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -187,6 +192,12 @@ impl Layer {
     /// Returns a field of the layer's own metadata.
     pub fn field(&self, name: &str) -> Option<&Value> {
         self.prims.get("/").and_then(|root| root.metadata.get(name))
+    }
+
+    /// Returns the number of time codes per second.
+    pub fn time_codes_per_second(&self) -> f64 {
+        let rate = |name| self.field(name).and_then(Value::number).filter(|rate| *rate > 0.0);
+        rate("timeCodesPerSecond").or_else(|| rate("framesPerSecond")).unwrap_or(24.0)
     }
 }
 

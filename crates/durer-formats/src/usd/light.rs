@@ -12,7 +12,7 @@ use durer_diag::Diagnostic;
 use durer_scene::describe::FileName;
 use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::{Object, ObjectKind, PictureBytes, Spanned, TextureImage};
+use durer_scene::scene::{Axis, Object, ObjectKind, PictureBytes, Spanned, TextureImage};
 use durer_scene::shape::{Cylinder, Disc, Rectangle, Sphere};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::{DAffine3, DVec3};
@@ -35,7 +35,16 @@ impl Reader<'_, '_> {
         };
         self.scene.is_lit = true;
         if kind.starts_with("DomeLight") {
-            return self.dome(prim, radiance, to_world);
+            // The pole of a DomeLight_1 is the up axis of the scene, unless it states another.
+            let pole = self.text(prim, "poleAxis");
+            let is_z = match pole.as_deref() {
+                _ if kind == "DomeLight" => false,
+                Some("Y") => false,
+                Some("Z") => true,
+                _ => self.scene.up == Some(Axis::Z),
+            };
+            let turned = if is_z { to_world * DAffine3::from_rotation_x(PI / 2.0) } else { to_world };
+            return self.dome(prim, radiance, turned);
         }
         if kind == "DistantLight" {
             return self.distant_light(prim, radiance, spectrum, to_world);
@@ -107,6 +116,14 @@ impl Reader<'_, '_> {
             _ => Cylinder { base: -half, top: half, radius }.into(),
         };
         self.add(ObjectKind::Primitive(shape), Some(material), to_world, at, objects);
+        if kind == "CylinderLight" {
+            // The caps do not emit light: a black disc covers each of them.
+            let black = self.emitter(&Emission { radiance: Vec3::ZERO, spectrum: None, picture: None }, at);
+            for end in [-half, half] {
+                let disc = Disc { center: end * (1.0 + 1e-4), normal: end, radius, inner_radius: 0.0 };
+                self.add(ObjectKind::Primitive(disc.into()), Some(black), to_world, at, objects);
+            }
+        }
     }
 
     /// Returns the numeric input of a light.

@@ -2,8 +2,8 @@
 //!
 //! Source: *UsdPreviewSurface Specification*, version 2.6.
 
-use super::primvar::{Interpolation, Primvar};
-use super::reader::{BoundMaterial, Reader};
+use super::primvar::{DISPLAY_COLOR, Interpolation, Primvar};
+use super::reader::{BoundMaterial, Inherited, Reader};
 use super::shader::{self, Input, Texture, input, shader_of};
 use super::stage::Prim;
 use crate::pictures::asset;
@@ -23,21 +23,26 @@ const USUAL_REFLECTANCE: f32 = 0.04;
 struct Surface {
     material: PrincipledMaterial,
     uvs: Vec<String>,
+    uses_colors: bool,
 }
 
 impl Reader<'_, '_> {
     /// Returns the material for a shape without subsets.
-    pub fn material_of(&mut self, prim: &Prim, bound: Option<&str>, at: Span) -> Option<u32> {
-        match bound.and_then(|path| self.material(path)) {
+    pub fn material_of(&mut self, prim: &Prim, here: &Inherited, at: Span) -> Option<u32> {
+        match here.material.as_deref().and_then(|path| self.material(path)) {
             Some(material) => Some(material.number),
-            None => self.display_material(prim, at),
+            None => self.display_material(prim, here, at),
         }
     }
 
-    /// Returns a material with the constant display colour of a prim, or `None` if it has none.
-    pub fn display_material(&mut self, prim: &Prim, at: Span) -> Option<u32> {
-        let color = Primvar::read(self.stage, prim, "primvars:displayColor", 3, Interpolation::Constant)?;
-        let opacity = Primvar::read(self.stage, prim, "primvars:displayOpacity", 1, Interpolation::Constant);
+    /// Returns a material with the constant display colour of a prim or, if it has none, of its
+    /// ancestors. Returns `None` if they have none.
+    pub fn display_material(&mut self, prim: &Prim, here: &Inherited, at: Span) -> Option<u32> {
+        let read = |name: &str, width: usize| {
+            let own = Primvar::read(self.stage, prim, name, width, Interpolation::Constant);
+            own.or_else(|| Primvar::inherited(self.stage, here.display.as_deref(), name, width))
+        };
+        let (color, opacity) = (read(DISPLAY_COLOR, 3)?, read("primvars:displayOpacity", 1));
         if color.values.iter().any(|value| *value > 1.5) {
             let warning = Diagnostic::warning("`displayColor` exceeds 1: colours go from 0 to 1, not to 255");
             let help = "divide the values by 255, and convert them from sRGB to linear values";
@@ -89,9 +94,9 @@ impl Reader<'_, '_> {
         for (shader, _) in shaders.collect::<Vec<_>>() {
             let id = self.text(&shader, "info:id").unwrap_or_default();
             if id == "UsdPreviewSurface" {
-                let Surface { mut material, uvs } = self.preview_surface(&shader);
+                let Surface { mut material, uvs, uses_colors } = self.preview_surface(&shader);
                 limit(&mut material);
-                return Some(BoundMaterial { number: self.add_material(material, at), uvs });
+                return Some(BoundMaterial { number: self.add_material(material, at), uvs, uses_colors });
             }
             unknown = id;
         }
@@ -111,7 +116,7 @@ impl Reader<'_, '_> {
             coat_ior: 1.5,
             ..PrincipledMaterial::default()
         };
-        let mut surface = Surface { material, uvs: Vec::new() };
+        let mut surface = Surface { material, uvs: Vec::new(), uses_colors: false };
         let s = &mut surface;
         let own = |name: &str| shader::numbers(self.stage, shader, name).and_then(|all| all.first().map(|x| *x as f32));
         let is_specular = own("useSpecularWorkflow") == Some(1.0);
@@ -201,15 +206,21 @@ impl Reader<'_, '_> {
                 let color = Vec3::from_array(all.map(|x| x as f32));
                 color.is_finite().then_some((color.max(Vec3::ZERO), None))
             }
-            Input::VertexColor => Some((Vec3::ONE, None)),
+            Input::VertexColor => {
+                s.uses_colors = true;
+                Some((Vec3::ONE, None))
+            }
             Input::Texture(texture) => {
                 let scale = Vec3::from_array(std::array::from_fn(|k| texture.scale[k] as f32)).max(Vec3::ZERO);
+                // A colour cannot exceed 1, but a texel can be multiplied by more.
+                let gain = scale.max_element().max(1.0);
+                let scale = scale / gain;
                 if texture.bias[..3] != [0.0; 3] {
                     let message = "the `bias` of a colour texture has no counterpart: it is left out";
                     self.stage.files.report.unsupported_once(texture.at, message);
                 }
                 let is_raw = is_color && texture.is_raw == Some(true);
-                let picture = self.color_picture(&texture, s, is_raw);
+                let picture = self.color_picture(&texture, s, (is_raw, gain));
                 let fallback = texture.fallback.map(|all| Vec3::from_array(std::array::from_fn(|k| all[k] as f32)));
                 match picture {
                     Some(picture) => Some((scale, Some(picture))),
@@ -241,9 +252,9 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Adds a picture of colours, whose alpha is ignored.
-    fn color_picture(&mut self, texture: &Texture, s: &mut Surface, is_raw: bool) -> Option<FileName> {
-        let opaque = |mapping: &mut Mapping| mapping.cutoff = Some(0.0);
+    /// Adds a picture of colours, whose alpha is ignored and whose texels are multiplied by `gain`.
+    fn color_picture(&mut self, texture: &Texture, s: &mut Surface, (is_raw, gain): (bool, f32)) -> Option<FileName> {
+        let opaque = |mapping: &mut Mapping| (mapping.cutoff, mapping.range) = (Some(0.0), [0.0, gain]);
         if !is_raw {
             return self.picture(texture, s, opaque);
         }

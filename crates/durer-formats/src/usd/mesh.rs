@@ -3,7 +3,7 @@
 //! Source: *OpenUSD documentation*, `UsdGeomMesh` and `UsdGeomSubset`.
 
 use super::layer::Value;
-use super::primvar::{Interpolation, Primvar};
+use super::primvar::{DISPLAY_COLOR, Interpolation, Primvar};
 use super::reader::{Inherited, Reader};
 use super::skel::Pose;
 use super::stage::Prim;
@@ -15,6 +15,7 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::tessellate::catmull_clark::{Crease, PolygonMesh};
 use glam::DVec3;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum number of faces of a subdivided mesh.
@@ -46,6 +47,26 @@ struct Part {
     faces: Option<Vec<bool>>,
 }
 
+/// Display colours that become colours of the points.
+enum Colors {
+    None,
+    /// Colours that vary over the mesh. A constant colour becomes a material.
+    Varying,
+    /// All colours; those of the given ancestor if the mesh has none.
+    All(Option<Rc<Prim>>),
+}
+
+impl Colors {
+    /// Returns a key that is equal for equal colours of the same mesh.
+    fn key(&self) -> String {
+        match self {
+            Colors::None => "-".into(),
+            Colors::Varying => String::new(),
+            Colors::All(inherited) => format!("+{}", inherited.as_ref().map_or("", |prim| &prim.path)),
+        }
+    }
+}
+
 impl Reader<'_, '_> {
     /// Adds a mesh, as one object for each of its materials.
     pub fn mesh(&mut self, prim: &Prim, here: &Inherited, objects: &mut Vec<Object>) {
@@ -58,11 +79,18 @@ impl Reader<'_, '_> {
         for part in self.parts(prim, here, count) {
             let bound = part.material.as_deref().and_then(|path| self.material(path));
             let uvs = bound.as_ref().map_or(Vec::new(), |bound| bound.uvs.clone());
-            let key = format!("{}#{}@{}{pose_key}", prim.key(), part.name, uvs.join(","));
+            // A bound material replaces the display colours, unless it reads them.
+            let colors = match &bound {
+                None => Colors::Varying,
+                Some(bound) if bound.uses_colors => Colors::All(here.display.clone()),
+                Some(_) => Colors::None,
+            };
+            let key = format!("{}#{}@{}{}{pose_key}", prim.key(), part.name, uvs.join(","), colors.key());
             let data = match self.meshes.get(&key) {
                 Some(known) => known.clone(),
                 None => {
-                    let data = self.mesh_data(prim, &uvs, part.faces.as_deref(), pose.as_ref()).map(Arc::new);
+                    let chosen = part.faces.as_deref();
+                    let data = self.mesh_data(prim, (&uvs, &colors), chosen, pose.as_ref()).map(Arc::new);
                     self.meshes.insert(key.clone(), data.clone());
                     data
                 }
@@ -72,7 +100,7 @@ impl Reader<'_, '_> {
             let material = match &bound {
                 Some(bound) => Some(bound.number),
                 None if has_colors => Some(self.vertex_color_material(at)),
-                None => self.display_material(prim, at),
+                None => self.display_material(prim, here, at),
             };
             let node = self.scene.add_mesh(&key, data, at);
             self.add(node, material, here.to_world, at, objects);
@@ -87,7 +115,8 @@ impl Reader<'_, '_> {
             if subset.type_name() != "GeomSubset" {
                 continue;
             }
-            let Some(material) = self.bound_material(&subset) else { continue };
+            let bound = self.bound_material(&subset).filter(|_| !here.is_stronger);
+            let Some((material, _)) = bound else { continue };
             let Some(indices) = subset.get(self.stage, "indices") else { continue };
             let mut faces = vec![false; count];
             for index in indices.value.numbers() {
@@ -107,7 +136,13 @@ impl Reader<'_, '_> {
 
     /// Converts the chosen faces of a mesh to triangles. `uvs` are the names of the texture
     /// coordinates that the material uses.
-    fn mesh_data(&self, prim: &Prim, uvs: &[String], chosen: Option<&[bool]>, pose: Option<&Pose>) -> Option<MeshData> {
+    fn mesh_data(
+        &self,
+        prim: &Prim,
+        (uvs, colors): (&[String], &Colors),
+        chosen: Option<&[bool]>,
+        pose: Option<&Pose>,
+    ) -> Option<MeshData> {
         let (files, at) = (self.stage.files, prim.span());
         let warn =
             |message: &str| files.report.warn_once("bad-mesh", at, format!("the mesh `{}` {message}", prim.name()));
@@ -136,9 +171,15 @@ impl Reader<'_, '_> {
         let names: Vec<&str> = if uvs.is_empty() { vec!["st"] } else { uvs.iter().map(String::as_str).collect() };
         let coordinates: Vec<Option<Primvar>> =
             names.iter().take(2).map(|name| self.coordinates(prim, name, &faces)).collect();
-        let color = Primvar::read(self.stage, prim, "primvars:displayColor", 3, Interpolation::Constant);
+        let display = |prim: &Prim| Primvar::read(self.stage, prim, DISPLAY_COLOR, 3, Interpolation::Constant);
+        let color = match colors {
+            Colors::None => None,
+            Colors::Varying => display(prim).filter(|color| color.interpolation != Interpolation::Constant),
+            Colors::All(ancestor) => {
+                display(prim).or_else(|| Primvar::inherited(self.stage, ancestor.as_deref(), DISPLAY_COLOR, 3))
+            }
+        };
         let opacity = Primvar::read(self.stage, prim, "primvars:displayOpacity", 1, Interpolation::Constant);
-        let color = color.filter(|color| color.interpolation != Interpolation::Constant);
         let reversed = self.text(prim, "orientation").as_deref() == Some("leftHanded");
         let levels = if is_smooth { self.levels(prim, &faces) } else { 0 };
         if levels > 0 {
@@ -149,7 +190,9 @@ impl Reader<'_, '_> {
         let mut triangulator = Triangulator::new(files.input.bytes.len());
         // Values that belong to corners need a copy of the point for each corner.
         let is_split = [coordinates.get(1).and_then(Option::as_ref), color.as_ref()];
-        let is_split = is_split.into_iter().flatten().any(|values| values.interpolation != Interpolation::Point);
+        let is_whole =
+            |values: &Primvar| matches!(values.interpolation, Interpolation::Point | Interpolation::Constant);
+        let is_split = is_split.into_iter().flatten().any(|values| !is_whole(values));
         if is_split {
             data.positions = faces.corners.iter().map(|point| faces.points[*point as usize]).collect();
         }

@@ -141,10 +141,7 @@ fn time_of(input: &ReadInput, root: &Layer) -> SampleTime {
     let number = |name: &str| root.field(name).and_then(Value::number);
     let start = number("startTimeCode");
     match (input.scene_defaults.animation_time, start) {
-        (Some(seconds), _) => {
-            let rate = number("timeCodesPerSecond").or(number("framesPerSecond")).unwrap_or(24.0);
-            SampleTime::At(start.unwrap_or(0.0) + f64::from(seconds) * rate)
-        }
+        (Some(seconds), _) => SampleTime::At(start.unwrap_or(0.0) + f64::from(seconds) * root.time_codes_per_second()),
         (None, Some(start)) => SampleTime::At(start),
         (None, None) => SampleTime::First,
     }

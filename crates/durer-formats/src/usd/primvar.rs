@@ -3,6 +3,9 @@
 use super::layer::Value;
 use super::stage::{Prim, Stage};
 
+/// Name of the primvar with the display colour.
+pub(super) const DISPLAY_COLOR: &str = "primvars:displayColor";
+
 /// Elements of a mesh to which the values of a primvar belong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Interpolation {
@@ -39,6 +42,12 @@ impl Primvar {
             _ => default,
         };
         Some(Primvar { width, values, indices, interpolation })
+    }
+
+    /// Reads a constant attribute of an ancestor, which prims below it inherit.
+    pub fn inherited(stage: &Stage, ancestor: Option<&Prim>, name: &str, width: usize) -> Option<Primvar> {
+        let values = Primvar::read(stage, ancestor?, name, width, Interpolation::Constant)?;
+        (values.interpolation == Interpolation::Constant).then_some(values)
     }
 
     /// Returns the index of the value at a corner, given the indices of its face, point and corner.

@@ -18,6 +18,10 @@ pub(super) struct Inherited {
     pub to_world: DAffine3,
     /// Path of the bound material.
     pub material: Option<String>,
+    /// True if the material is stronger than those of descendants.
+    pub is_stronger: bool,
+    /// Nearest ancestor with a constant display colour.
+    pub display: Option<Rc<Prim>>,
     /// Paths of the skeleton and of its animation.
     pub skeleton: [Option<String>; 2],
 }
@@ -42,10 +46,13 @@ pub(super) struct Reader<'s, 'a> {
     pub invisible: Vec<Invisible>,
 }
 
-/// Material of the scene, with the names of the texture coordinates that its pictures use.
+/// Material of the scene, with the primvars that it uses: the names of the texture coordinates of
+/// its pictures, and display colours.
 pub(super) struct BoundMaterial {
     pub number: u32,
     pub uvs: Vec<String>,
+    /// True if it uses the display colours of the mesh.
+    pub uses_colors: bool,
 }
 
 /// Radiance of a light surface.
@@ -149,19 +156,21 @@ impl<'s, 'a> Reader<'s, 'a> {
         prim.get(self.stage, name).and_then(|opinion| opinion.value.boolean())
     }
 
-    /// Returns the path of the material that a prim binds itself.
-    pub fn bound_material(&self, prim: &Prim) -> Option<String> {
+    /// Returns the path of the material that a prim binds itself, and true if it is stronger than
+    /// the materials of descendants.
+    pub fn bound_material(&self, prim: &Prim) -> Option<(String, bool)> {
         let purposes = ["material:binding:full", "material:binding", "material:binding:preview"];
-        let bound = purposes.into_iter().find_map(|name| prim.targets(name).into_iter().next());
+        let bound = purposes.into_iter().find_map(|name| Some((prim.targets(name).into_iter().next()?, name)));
         if bound.is_none() && prim.property_names().iter().any(|name| name.starts_with("material:binding:collection")) {
             let message = "bindings of materials to collections have no counterpart: they are left out";
             self.stage.files.report.unsupported_once(prim.span(), message);
         }
-        if let Some(path) = bound.as_ref().filter(|path| self.stage.prim(path).is_none()) {
+        if let Some((path, _)) = bound.as_ref().filter(|(path, _)| self.stage.prim(path).is_none()) {
             let message = format!("the material `{path}` does not exist: the display colour is used");
             self.stage.files.report.unsupported_once(prim.span(), message);
         }
-        bound
+        let strength = |name| prim.field_of(name, "bindMaterialAs");
+        bound.map(|(path, name)| (path, strength(name).as_deref() == Some("strongerThanDescendants")))
     }
 
     /// Adds a material to the scene and returns its number.

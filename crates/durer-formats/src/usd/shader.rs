@@ -85,9 +85,12 @@ fn connected(stage: &Stage, shader: &Prim, output: &str) -> Option<Input> {
     match id.as_str() {
         "UsdUVTexture" => texture(stage, shader, output).map(Input::Texture),
         id if id.starts_with("UsdPrimvarReader") => {
-            if text(stage, shader, "varname").as_deref() == Some("displayColor") {
+            let name = text(stage, shader, "varname").unwrap_or_default();
+            if name == "displayColor" {
                 return Some(Input::VertexColor);
             }
+            let message = format!("the primvar `{name}` has no counterpart in a material: its fallback is used");
+            stage.files.report.unsupported_once(shader.span(), message);
             input(stage, shader, "fallback").filter(|input| matches!(input, Input::Value(_)))
         }
         other => {
@@ -127,7 +130,12 @@ fn texture(stage: &Stage, shader: &Prim, output: &str) -> Option<Texture> {
     }
     let quad = |name: &str| numbers(stage, shader, name).and_then(|all| all.first_chunk::<4>().copied());
     let wrap = |name: &str| match text(stage, shader, name).as_deref() {
-        Some("clamp" | "black") => Wrap::Clamp,
+        Some("black") => {
+            let message = "black outside of a picture has no counterpart: the colours of its border are repeated";
+            report.unsupported_once(shader.span(), message);
+            Wrap::Clamp
+        }
+        Some("clamp") => Wrap::Clamp,
         Some("mirror") => Wrap::Mirror,
         _ => Wrap::Repeat,
     };

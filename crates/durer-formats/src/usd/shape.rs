@@ -20,10 +20,11 @@ impl Reader<'_, '_> {
             Some("Y") => Vec3::Y,
             _ => Vec3::Z,
         };
-        let (radius, height) = match kind {
-            "Capsule" => (number("radius", 0.5), number("height", 1.0)),
-            _ => (number("radius", 1.0), number("height", 2.0)),
-        };
+        let (usual_radius, usual_height) = if kind == "Capsule" { (0.5, 1.0) } else { (1.0, 2.0) };
+        // The second version of cylinders and capsules has a radius for each end.
+        let radius = number("radiusBottom", number("radius", usual_radius).into());
+        let top_radius = number("radiusTop", radius.into());
+        let height = number("height", usual_height);
         let (base, top) = (-0.5 * height * axis, 0.5 * height * axis);
         let is_empty = match kind {
             "Sphere" => radius <= 0.0,
@@ -40,7 +41,8 @@ impl Reader<'_, '_> {
         let node: ObjectKind = match kind {
             "Sphere" => ObjectKind::Primitive(Sphere { center: Vec3::ZERO, radius }.into()),
             "Cube" => ObjectKind::Primitive(Cuboid { min: Vec3::splat(-side), max: Vec3::splat(side) }.into()),
-            "Cylinder" => ObjectKind::Primitive(Cylinder { base, top, radius }.into()),
+            "Cylinder" if top_radius == radius => ObjectKind::Primitive(Cylinder { base, top, radius }.into()),
+            "Cylinder" => ObjectKind::Primitive(Cone { base, top, base_radius: radius, top_radius }.into()),
             "Cone" => ObjectKind::Primitive(Cone { base, top, base_radius: radius, top_radius: 0.0 }.into()),
             "Plane" => {
                 let (width, length) = (number("width", 2.0), number("length", 2.0));
@@ -54,14 +56,22 @@ impl Reader<'_, '_> {
             }
             _ => {
                 let part = |node| Object { node, material: None, span: at };
-                let mut parts = vec![part(ball(base, radius)), part(ball(top, radius))];
+                let mut parts = vec![part(ball(base, radius)), part(ball(top, top_radius))];
+                if top_radius != radius {
+                    let message = "a capsule with two radii has no exact counterpart: its ends are balls around a cone";
+                    self.stage.files.report.unsupported_once(at, message);
+                }
                 if height > 0.0 {
-                    parts.push(part(ObjectKind::Primitive(Cylinder { base, top, radius }.into())));
+                    let body = match top_radius == radius {
+                        true => Cylinder { base, top, radius }.into(),
+                        false => Cone { base, top, base_radius: radius, top_radius }.into(),
+                    };
+                    parts.push(part(ObjectKind::Primitive(body)));
                 }
                 ObjectKind::Group(Group { objects: parts })
             }
         };
-        let material = self.material_of(prim, here.material.as_deref(), at);
+        let material = self.material_of(prim, here, at);
         // Objects in a group have their own material.
         let node = match node {
             ObjectKind::Group(mut group) => {
@@ -79,7 +89,7 @@ impl Reader<'_, '_> {
         let Some(points) = prim.get(self.stage, "points") else { return };
         let widths = prim.get(self.stage, "widths");
         let widths = widths.as_ref().map_or(&[][..], |widths| widths.value.numbers());
-        let material = self.material_of(prim, here.material.as_deref(), at);
+        let material = self.material_of(prim, here, at);
         for (i, point) in points.value.numbers().as_chunks::<3>().0.iter().enumerate() {
             let width = widths.get(i).or(widths.first()).copied().unwrap_or(1.0);
             let center = Vec3::from_array(point.map(|x| x as f32));

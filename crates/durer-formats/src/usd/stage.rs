@@ -9,7 +9,9 @@
 //! layer has about a class of a referenced layer are left out.
 
 use super::files::{LayerFiles, joined};
-use super::layer::{Layer, ListEdit, PrimSpec, Property, Reference, Specifier, Value, child_path, variant_path};
+use super::layer::{
+    Layer, ListEdit, PrimSpec, Property, RETIMED, Reference, Specifier, Value, child_path, variant_path,
+};
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
@@ -198,12 +200,13 @@ impl<'a> Stage<'a> {
         self.expand_variants(&site, &specs, prim, (sites, own), chain);
         for field in [|spec: &PrimSpec| spec.references.clone(), |spec: &PrimSpec| spec.payloads.clone()] {
             // Each reference is relative to the layer that contains it.
-            let mut all: Vec<(String, Reference)> = Vec::new();
+            let mut all: Vec<Reference> = Vec::new();
             for (layer, spec) in specs.iter().rev() {
                 field(spec).of_layer(&layer.name).apply(&mut all);
             }
-            for (layer, reference) in all {
-                let Some((stack, path)) = self.target(&site, &layer, &reference, at) else { continue };
+            for reference in all {
+                let Some((stack, path)) = self.target(&site, &reference, at) else { continue };
+                self.check_times(&site.stack, &stack, reference.is_retimed, at);
                 let map = PathMap { from: path.clone(), to: to.clone(), outer: None };
                 self.expand(Site { stack, path, map: Rc::new(map) }, prim, sites, chain);
             }
@@ -264,8 +267,27 @@ impl<'a> Stage<'a> {
         self.files.report.push(error.help(help));
     }
 
-    /// Returns the stack and path that a reference in a layer names.
-    fn target(&self, site: &Site, layer: &str, reference: &Reference, at: Span) -> Option<(Stack, String)> {
+    /// Warns of animations of a referenced layer that have other times than those of the scene.
+    fn check_times(&self, from: &Stack, to: &Stack, is_retimed: bool, at: Span) {
+        let rate = |stack: &Stack| stack.first().map_or(24.0, |layer| layer.time_codes_per_second());
+        if is_retimed || rate(from) != rate(to) {
+            self.report_times(at);
+        }
+    }
+
+    fn report_times(&self, at: Span) {
+        // Without a requested time, scenes are usually read for their pose.
+        if self.files.input.scene_defaults.animation_time.is_none() {
+            return;
+        }
+        let message = "times of layers that are moved or scaled have no counterpart: animations there keep their own \
+                       time codes";
+        self.files.report.unsupported_once(at, message);
+    }
+
+    /// Returns the stack and path that a reference names. Its file is relative to the scene's
+    /// folder.
+    fn target(&self, site: &Site, reference: &Reference, at: Span) -> Option<(Stack, String)> {
         let stack = match reference.asset.is_empty() {
             true => site.stack.clone(),
             false if reference.asset.ends_with(".mtlx") => {
@@ -274,7 +296,7 @@ impl<'a> Stage<'a> {
                     .unsupported_once(at, "materials in MaterialX files have no counterpart: they are left out");
                 return None;
             }
-            false => self.stack(&joined(layer, &reference.asset), at)?,
+            false => self.stack(&reference.asset, at)?,
         };
         if !reference.prim.is_empty() {
             return Some((stack, reference.prim.clone()));
@@ -311,7 +333,10 @@ impl<'a> Stage<'a> {
             Some(Value::Texts(names)) => names.clone(),
             _ => Vec::new(),
         };
-        let folder = layer.name.clone();
+        if layer.field(RETIMED) == Some(&Value::Bool(true)) {
+            self.report_times(at);
+        }
+        let (folder, rate) = (layer.name.clone(), layer.time_codes_per_second());
         chain.push(folder.clone());
         layers.push(layer);
         for name in names {
@@ -323,6 +348,9 @@ impl<'a> Stage<'a> {
                 return;
             }
             if let Some(sublayer) = self.files.layer(&name, at) {
+                if sublayer.time_codes_per_second() != rate {
+                    self.report_times(at);
+                }
                 self.add_layers(Rc::new(sublayer), layers, chain);
             }
         }
@@ -346,9 +374,14 @@ impl PrimSpec {
 }
 
 impl ListEdit<Reference> {
-    /// Adds the name of the layer to each reference.
-    fn of_layer(&self, layer: &str) -> ListEdit<(String, Reference)> {
-        let all = |list: &Vec<Reference>| list.iter().map(|one| (layer.to_string(), one.clone())).collect();
+    /// Replaces the files of references, which are relative to a layer, by names in the scene's
+    /// folder, so that the edits of different layers can be compared.
+    fn of_layer(&self, layer: &str) -> ListEdit<Reference> {
+        let named = |one: &Reference| match one.asset.is_empty() {
+            true => one.clone(),
+            false => Reference { asset: joined(layer, &one.asset), ..one.clone() },
+        };
+        let all = |list: &Vec<Reference>| list.iter().map(named).collect();
         ListEdit {
             explicit: self.explicit.as_ref().map(all),
             prepended: all(&self.prepended),
@@ -391,6 +424,11 @@ impl Prim {
         self.specs().find_map(|(spec, ..)| spec.metadata.get(name)?.boolean())
     }
 
+    /// Returns the numbers of a metadata field.
+    pub fn numbers_of(&self, name: &str) -> Vec<f64> {
+        self.specs().find_map(|(spec, ..)| Some(spec.metadata.get(name)?.numbers().to_vec())).unwrap_or_default()
+    }
+
     /// True if an API schema is applied to the prim.
     pub fn has_api(&self, schema: &str) -> bool {
         let mut schemas = Vec::new();
@@ -423,6 +461,12 @@ impl Prim {
             })
         });
         Some(Opinion { value, metadata, layer: layer.name.clone(), span: property.span })
+    }
+
+    /// Returns the text of a metadata field of a property.
+    pub fn field_of(&self, property: &str, name: &str) -> Option<String> {
+        let fields = self.specs().filter_map(|(spec, ..)| spec.properties.get(property)?.metadata.get(name));
+        fields.filter_map(Value::text).next().map(str::to_string)
     }
 
     /// Returns the numbers of an attribute; empty if it has none.

@@ -131,6 +131,82 @@ fn stronger_layers_override_and_lists_are_edited() {
     assert_eq!(radii(&scene), [1.0, 1.0, 3.0]);
 }
 
+/// Lists of references are edited by stronger layers, which name the files relative to their own
+/// folder.
+#[test]
+fn stronger_layers_edit_lists_of_references() {
+    let part = |x: f64| {
+        format!(
+            "#usda 1.0\n( defaultPrim = \"R\" )\ndef Xform \"R\" {{ def Sphere \"S{x}\" {{ double3 xformOp:translate = ({x}, 0, 0)
+             uniform token[] xformOpOrder = [\"xformOp:translate\"] }} }}"
+        )
+    };
+    let sublayer = b"#usda 1.0\ndef Xform \"A\" ( prepend references = [@../r1.usda@, @../r2.usda@] ) {}";
+    let folder = folder(&[
+        ("r1.usda", part(1.0).as_bytes()),
+        ("r2.usda", part(2.0).as_bytes()),
+        ("r3.usda", part(3.0).as_bytes()),
+        ("sub/s.usda", sublayer),
+    ]);
+    for (edit, expected) in [
+        ("", vec![1.0, 2.0]),
+        ("delete references = @r1.usda@", vec![2.0]),
+        ("delete references = @r1.usda@ prepend references = @./r3.usda@", vec![2.0, 3.0]),
+        ("references = [@r3.usda@]", vec![3.0]),
+        ("references = None", vec![]),
+    ] {
+        let root =
+            format!("#usda 1.0\n( subLayers = [@sub/s.usda@] )\nover \"A\" ( {edit} ) {{}}\ndef Sphere \"Other\" {{}}");
+        let scene = read_in(folder.path(), "a.usda", root).0.unwrap();
+        let mut places: Vec<f64> = origins(&scene).iter().map(|origin| origin.x).filter(|x| *x > 0.0).collect();
+        places.sort_by(f64::total_cmp);
+        assert_eq!(places, expected, "{edit}");
+    }
+}
+
+/// Constant display colours are inherited. Caps of cylinders emit no light, and the pole of a dome
+/// follows the scene's up axis.
+#[test]
+fn colors_are_inherited_and_lights_follow_their_schema() {
+    let scene = sound(
+        "def Xform \"X\" {
+            color3f[] primvars:displayColor = [(1, 0, 0)] ( interpolation = \"constant\" )
+            def Sphere \"Red\" {}
+            def Sphere \"Blue\" { color3f[] primvars:displayColor = [(0, 0, 1)] }
+        }",
+    );
+    let colors: Vec<Vec3> = materials(&scene).iter().map(|material| material.base_color).take(2).collect();
+    assert_eq!(colors, [Vec3::X, Vec3::Z]);
+    let scene = sound("def CylinderLight \"Tube\" { float inputs:intensity = 5 }");
+    let shapes: Vec<&str> = leaves(&scene)
+        .iter()
+        .map(|(_, object)| match &object.node {
+            ObjectKind::Primitive(Primitive::Cylinder(_)) => "cylinder",
+            ObjectKind::Primitive(Primitive::Disc(_)) => "disc",
+            _ => "other",
+        })
+        .collect();
+    assert_eq!(shapes, ["cylinder", "disc", "disc"]);
+    assert_eq!(materials(&scene)[1].emission_color, Vec3::ZERO);
+    // In a scene with z up, the picture of a dome is turned, so it is resampled.
+    let folder = folder(&[("sky.ppm", b"P6 2 1 255 \xff\xff\xff\0\0\0")]);
+    for (up, kind, pole, is_turned) in [
+        ("Z", "DomeLight_1", "", true),
+        ("Z", "DomeLight_1", "uniform token poleAxis = \"Y\"", false),
+        ("Y", "DomeLight_1", "uniform token poleAxis = \"Z\"", true),
+        ("Y", "DomeLight_1", "", false),
+        ("Z", "DomeLight", "", false),
+    ] {
+        let text = format!(
+            "#usda 1.0\n( upAxis = \"{up}\" )\ndef {kind} \"Sky\" {{ asset inputs:texture:file = @sky.ppm@ {pole} }}\ndef Sphere \"S\" {{}}"
+        );
+        let (scene, messages) = read_in(folder.path(), "a.usda", text);
+        assert_eq!(messages, [""; 0]);
+        let path = scene.unwrap().background.environment.unwrap().path;
+        assert_eq!(path.contains('#'), is_turned, "{up} {kind} {pole}: {path}");
+    }
+}
+
 #[test]
 fn bindings_follow_references_and_subsets() {
     let asset = b"#usda 1.0

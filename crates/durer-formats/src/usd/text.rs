@@ -2,7 +2,7 @@
 //!
 //! Source: *OpenUSD specification*, "USDA file format".
 
-use super::layer::{Layer, PrimSpec, Reference, Specifier, Value, child_path, variant_path};
+use super::layer::{Layer, PrimSpec, RETIMED, Reference, Specifier, Value, child_path, variant_path};
 use super::lexer::{Lexer, SyntaxError, Token};
 use durer_diag::Span;
 use std::collections::BTreeMap;
@@ -257,8 +257,11 @@ impl Parser<'_> {
                     }
                 }
                 "subLayers" => {
-                    let layers = self.references()?.into_iter().map(|layer| layer.asset).collect();
-                    prim.metadata.insert(field, Value::Texts(layers));
+                    let layers = self.references()?;
+                    let is_retimed = layers.iter().any(|layer| layer.is_retimed);
+                    prim.metadata.insert(RETIMED.into(), Value::Bool(is_retimed));
+                    let names = layers.into_iter().map(|layer| layer.asset).collect();
+                    prim.metadata.insert(field, Value::Texts(names));
                 }
                 _ => {
                     let value = self.value(0)?;
@@ -303,7 +306,10 @@ impl Parser<'_> {
                 other => return self.error(format!("expected a file such as `@a.usd@`, found {other}")),
             }
             if self.lexer.accept("(")? {
-                self.metadata(&mut PrimSpec::default())?;
+                let mut fields = PrimSpec::default();
+                self.metadata(&mut fields)?;
+                let is = |name: &str, usual: f64| fields.metadata.get(name).is_none_or(|x| x.number() == Some(usual));
+                one.is_retimed = !(is("offset", 0.0) && is("scale", 1.0));
             }
             all.push(one);
             if !is_list {

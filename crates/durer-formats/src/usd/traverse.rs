@@ -1,10 +1,12 @@
 //! Traversal of the prims, which adds objects, lights and cameras to the scene.
 
+use super::primvar::DISPLAY_COLOR;
 use super::reader::{Inherited, Reader};
 use super::skel::binding;
 use super::stage::Prim;
 use super::transform::local_transform;
 use durer_scene::scene::Object;
+use std::rc::Rc;
 
 /// Maximum nesting depth of prims.
 const MAX_DEPTH: u32 = 256;
@@ -22,8 +24,8 @@ impl Reader<'_, '_> {
         let (local, resets) = local_transform(self.stage, prim);
         let mut here = inherited.clone();
         here.to_world = if resets { local } else { inherited.to_world * local };
-        if let Some(material) = self.bound_material(prim) {
-            here.material = Some(material);
+        if let Some((material, is_stronger)) = self.bound_material(prim).filter(|_| !inherited.is_stronger) {
+            (here.material, here.is_stronger) = (Some(material), is_stronger);
         }
         here.skeleton = binding(prim, inherited);
         let type_name = prim.type_name().to_string();
@@ -33,6 +35,9 @@ impl Reader<'_, '_> {
             "Material" | "Shader" | "NodeGraph" | "Skeleton" | "SkelAnimation" | "GeomSubset"
         ) {
             return;
+        }
+        if prim.property_names().contains(DISPLAY_COLOR) && !is_shape(&type_name) {
+            here.display = Some(Rc::new(prim.clone()));
         }
         if type_name == "Camera" {
             // An invisible camera can be used.
@@ -56,12 +61,13 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Adds the shape, the light or nothing of a prim.
     fn shape(&mut self, prim: &Prim, type_name: &str, here: &Inherited, objects: &mut Vec<Object>) {
         let report = self.stage.files.report;
         match type_name {
             "Mesh" => self.mesh(prim, here, objects),
-            "Sphere" | "Cube" | "Cylinder" | "Cone" | "Capsule" | "Plane" => {
-                self.simple_shape(prim, type_name, here, objects);
+            "Sphere" | "Cube" | "Cylinder" | "Cylinder_1" | "Cone" | "Capsule" | "Capsule_1" | "Plane" => {
+                self.simple_shape(prim, type_name.trim_end_matches("_1"), here, objects);
             }
             "Points" => self.points(prim, here, objects),
             "BasisCurves" => self.curves(prim, here, objects),
@@ -80,4 +86,22 @@ impl Reader<'_, '_> {
             report.unsupported_once(prim.span(), "blend shapes have no counterpart: they are left out");
         }
     }
+}
+
+/// Returns true for prims with geometry, whose display colour can vary over their surface.
+fn is_shape(type_name: &str) -> bool {
+    matches!(
+        type_name,
+        "Mesh"
+            | "Sphere"
+            | "Cube"
+            | "Cylinder"
+            | "Cylinder_1"
+            | "Cone"
+            | "Capsule"
+            | "Capsule_1"
+            | "Plane"
+            | "Points"
+            | "BasisCurves"
+    )
 }
