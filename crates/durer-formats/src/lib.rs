@@ -17,6 +17,7 @@ mod decoder;
 mod disney;
 mod emitters_only;
 mod export;
+mod face_colors;
 mod files;
 #[cfg(feature = "fs")]
 pub mod folder;

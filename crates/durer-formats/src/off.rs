@@ -3,6 +3,7 @@
 //! Source: *Geomview Manual*, "OFF Files", The Geometry Center. The first word consists of optional
 //! prefixes (`ST` texture coordinates, `C` colours, `N` normals) and `OFF`.
 
+use super::face_colors::color_faces;
 use super::number::{NumberError, parse_f32};
 use super::polygon::Triangulator;
 use super::report::{Report, quoted};
@@ -183,6 +184,7 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     }
     let mut triangulator = Triangulator::new(bytes.len());
     let mut corners = Vec::new();
+    let mut face_colors = Vec::new();
     for face in 0..faces {
         let Some((count, at)) = words.count(report, "the number of corners of a face") else {
             // The first word after the vertices is not a count, so it may begin another vertex.
@@ -206,13 +208,17 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
             }
             corners.push(index as u32);
         }
-        // The colour of a face has no counterpart.
-        words.rest_of_line();
+        let color = color_of(&words.rest_of_line());
+        let before = data.triangles.len();
         let (positions, triangles) = (&data.positions, &mut data.triangles);
         let corner = |i: usize| positions[corners[i] as usize];
         if triangulator.triangulate(corners.len(), corner, |t| triangles.push(t.map(|i| corners[i]))).is_err() {
             report.error(at, "the polygons are too large and too irregular to be split into triangles");
             return None;
+        }
+        if color.is_some() || !face_colors.is_empty() {
+            face_colors.resize(before, [1.0; 4]);
+            face_colors.resize(data.triangles.len(), color.unwrap_or([1.0; 4]));
         }
     }
     if has_normals {
@@ -221,6 +227,7 @@ fn parse(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     if !data.uvs.is_empty() {
         data.triangle_uvs.clone_from(&data.triangles);
     }
+    color_faces(&mut data, &face_colors);
     Some(data)
 }
 
@@ -330,6 +337,18 @@ mod tests {
         assert!(messages.is_empty(), "{messages:?}");
         assert_eq!((mesh.positions.len(), &mesh.triangles[..]), (4, &[[0, 1, 2], [0, 2, 3]][..]));
         assert_eq!(mesh.colors[1], [0.0, 1.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn colours_of_faces_become_colours_of_vertices() {
+        let mesh = read_text("OFF\n4 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n3 0 2 3 0 0 1 0.5\n")
+            .0
+            .unwrap();
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (12, 4));
+        let colors: Vec<[f32; 4]> = mesh.triangles.iter().map(|corners| mesh.colors[corners[1] as usize]).collect();
+        let red = [1.0, 0.0, 0.0, 1.0];
+        assert_eq!(colors, [[1.0; 4], red, red, [0.0, 0.0, 1.0, 0.5]]);
+        assert_eq!(mesh.positions[mesh.triangles[2][2] as usize], Vec3::Y);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::header::{Element, Property};
 use super::values::{ValueError, ValueReader};
+use crate::face_colors::color_faces;
 use crate::number::{NumberError, report_number};
 use crate::polygon::Triangulator;
 use crate::report::{Report, count_text, quoted};
@@ -21,12 +22,15 @@ pub(super) struct RowReader<'a, 'r, V> {
     pub triangulator: Triangulator,
     /// Corners of the current face or triangle strip.
     pub corners: Vec<u32>,
+    /// Colour of each triangle; empty if faces have no colours.
+    pub face_colors: Vec<[f32; 4]>,
 }
 
 impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
     pub fn new(bytes: &'a [u8], values: V, report: &'r mut Report) -> Self {
         let triangulator = Triangulator::new(bytes.len());
-        RowReader { bytes, report, values, mesh: MeshData::default(), triangulator, corners: Vec::new() }
+        let (mesh, corners, face_colors) = (MeshData::default(), Vec::new(), Vec::new());
+        RowReader { bytes, report, values, mesh, triangulator, corners, face_colors }
     }
 
     /// Reads all elements, starting with the vertices, wherever they are in the file.
@@ -80,6 +84,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         if !normals.is_empty() {
             triangle_normals.clone_from(triangles);
         }
+        color_faces(&mut self.mesh, &self.face_colors);
         Ok(())
     }
 

@@ -152,7 +152,8 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         }
         let strips = &self.bytes[element.name.clone()] == b"tristrips";
         let list = self.corner_list(element)?;
-        if !strips && self.fixed_faces(element, list).is_some() {
+        let colors = self.color_columns(element);
+        if !strips && colors.is_none() && self.fixed_faces(element, list).is_some() {
             return Ok(());
         }
         if !strips {
@@ -160,9 +161,14 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             self.mesh.triangles.reserve(likely);
         }
         for row in 0..element.rows {
+            let (mut color, count) = ([1.0; 4], self.mesh.triangles.len());
             for (i, property) in element.properties.iter().enumerate() {
                 if i != list {
-                    self.skip_property(element, row, property)?;
+                    let channel = colors.and_then(|colors| colors.iter().position(|column| *column == Some(i)));
+                    match channel {
+                        Some(channel) => color[channel] = self.intensity(element, row, property)?,
+                        None => self.skip_property(element, row, property)?,
+                    }
                     continue;
                 }
                 // An invalid vertex index has already been reported, so skip the face.
@@ -172,8 +178,39 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                     false => {}
                 }
             }
+            if colors.is_some() {
+                let [r, g, b, alpha] = color;
+                let color = [r, g, b].map(|share| decode_srgb((share * 255.0 + 0.5) as u8));
+                // Faces of an earlier element without colours are white.
+                let first = self.face_colors.len().max(count);
+                self.face_colors.resize(first, [1.0; 4]);
+                self.face_colors.resize(self.mesh.triangles.len(), [color[0], color[1], color[2], alpha]);
+            }
         }
         Ok(())
+    }
+
+    /// Returns the properties of an element that hold red, green, blue and, if there is one, alpha;
+    /// `None` without colours.
+    fn color_columns(&self, element: &Element) -> Option<[Option<usize>; 4]> {
+        let column = |names: &[&str]| {
+            let is_named = |property: &Property| {
+                let name = &self.bytes[property.name.clone()];
+                property.length_type.is_none() && names.iter().any(|known| known.as_bytes() == name)
+            };
+            element.properties.iter().position(is_named)
+        };
+        let columns: [Option<usize>; 4] = std::array::from_fn(|channel| column(COLUMNS[8 + channel]));
+        columns[..3].iter().all(Option::is_some).then_some(columns)
+    }
+
+    /// Reads a channel of a colour, from 0 to 1.
+    fn intensity(&mut self, element: &Element, row: u64, property: &Property) -> Result<f32, ErrorReported> {
+        match self.values.float(property.number_type) {
+            Ok(value) => Ok((value / property.number_type.full_intensity()).clamp(0.0, 1.0)),
+            Err(ValueError::Number(NumberError::NotFinite)) => Ok(1.0),
+            Err(error) => self.report_and_continue(error, element, row).map(|()| 1.0),
+        }
     }
 
     /// Returns the index of the property that lists the vertices of a face.

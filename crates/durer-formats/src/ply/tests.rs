@@ -322,3 +322,16 @@ fn nothing_panics() {
     }
     assert_eq!(read(b"ply\r\nformat", "m.ply").0, None::<MeshData>);
 }
+
+#[test]
+fn colours_of_faces_become_colours_of_vertices() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n\
+        property float t\nelement face 2\nproperty uchar red\nproperty list uchar int vertex_indices\nproperty uchar green\n\
+        property uchar blue\nend_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n255 4 0 1 2 3 0 0\n0 3 0 1 2 0 255\n";
+    let mesh = read_clean(text.as_bytes(), "a.ply");
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (9, 3));
+    let color = |triangle: usize| mesh.colors[mesh.triangles[triangle][2] as usize];
+    assert_eq!([color(0), color(1), color(2)], [[1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]);
+    // Texture coordinates keep their indices.
+    assert_eq!((mesh.uvs.len(), mesh.triangle_uvs[1]), (4, [0, 2, 3]));
+}
