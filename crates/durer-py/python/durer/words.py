@@ -177,7 +177,7 @@ class Texture(Thing):
 
     channel: `r`, `g`, `b`, `a`, `angle`. Channel used for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green. The default is red, or for opacity the alpha channel if there is one.
 
-    texel_range: `{ }` with rows of 2 numbers, 1 of them. Values that texels of 0 and 1 are mapped to in a scalar field.
+    texel_range: `{ }` with rows of 2 numbers, 1 of them. Values that texels of 0 and 1 are mapped to. Normal and bump maps ignore them.
     """
 
     def __init__(

@@ -49,7 +49,12 @@ impl World {
 
     /// Returns the factor by which textures and vertex colours multiply the emission.
     pub(super) fn emission_at(&self, principled: &Principled, at: &SurfaceInteraction) -> Color {
-        let picture = self.texel(principled.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
+        let picture = principled.maps.emission.and_then(|map| {
+            let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
+            let [r, g, b, _] = self.texel(Some(map), at)?;
+            Some(Vec3::new(r, g, b).map(|x| mapping.map_to_range(x).max(0.0)))
+        });
+        let picture = picture.unwrap_or(Color::ONE);
         let [r, g, b, _] = at.surface.color;
         if principled.definition.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
@@ -61,8 +66,9 @@ impl World {
         let share = principled.maps.opacity.and_then(|map| {
             let texture = &self.textures()[map as usize];
             let usual = if texture.has_alpha() { Channel::Alpha } else { Channel::Red };
-            let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
-            Some(channel.of(self.texel(Some(map), at)?))
+            let mapping = texture.mapping().copied().unwrap_or_default();
+            let texel = mapping.channel.unwrap_or(usual).of(self.texel(Some(map), at)?);
+            Some(mapping.map_to_range(texel).clamp(0.0, 1.0))
         });
         let opacity = principled.definition.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0);
         principled.definition.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))

@@ -81,7 +81,7 @@ described! {
         /// Channel used for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in
         /// red and green. The default is red, or for opacity the alpha channel if there is one.
         channel: Option<Channel> = None, optional, Constraint::Any, ["channel" in set::DURER];
-        /// Values that texels of 0 and 1 are mapped to in a scalar field.
+        /// Values that texels of 0 and 1 are mapped to. Normal and bump maps ignore them.
         texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Constraint::Rows(1, 1), ["texelRange" in set::DURER];
     }
 }

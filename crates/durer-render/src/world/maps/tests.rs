@@ -271,3 +271,29 @@ fn mapped_normals_that_face_away_are_black_or_turned() {
         assert!((normal - Vec3::new(0.0, wanted.y, 0.6)).length() < 0.01, "{green} {wall}: {normal}");
     }
 }
+
+/// `texelRange` applies to the opacity and to the emission, like to all other parameters.
+#[test]
+fn ranges_of_texels_apply_to_opacity_and_emission() {
+    let quarter = |_, _| [64, 64, 64];
+    let folder = folder("ranges", &[("quarter.ppm", 2, &quarter)]);
+    for (range, factor, shift) in [("0 1", 1.0, 0.0), ("0 2", 2.0, 0.0), ("0.25 0.75", 0.5, 0.25), ("1 3", 2.0, 1.0)] {
+        let text = format!(
+            "PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 1 1 1 }}
+             Textures {{ Texture {{ name ranged picture quarter.ppm channel r texelRange {{ {range} }} }} }}
+             Materials {{ PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 1
+               opacityTexture ranged emissionTexture ranged }} }}
+             Group {{ MaterialIndex 0 {BALL} }}"
+        );
+        let (world, diagnostics) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+        assert_eq!(diagnostics.iter().count(), 0, "{diagnostics:?}");
+        let world = world.unwrap();
+        let at = hit(&world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z);
+        // Numbers are the bytes of the picture, and colours are converted from sRGB.
+        let number: f32 = factor * 64.0 / 255.0 + shift;
+        assert!((world.opacity(&at) - number.min(1.0)).abs() < 1e-5, "{range}: {}", world.opacity(&at));
+        let color = factor * 0.051_269 + shift;
+        let emission = world.emission_at(material(&world, 0), &at);
+        assert!((emission - Vec3::splat(color)).abs().max_element() < 1e-4, "{range}: {emission}");
+    }
+}
