@@ -9,8 +9,8 @@ mod hits;
 mod lights;
 
 use super::bugs::{
-    Ambient, BehindOrigin, Bugs, Fresnel, Glass, HitChoice, LightSum, Mirror, Normals, ShadowDirection, ShadowRayEnd,
-    SphereNormal, TotalReflection,
+    Ambient, BehindOrigin, Bugs, Fresnel, Glass, HighlightBugs, HitChoice, LightSum, Mirror, Normals, ShadowDirection,
+    ShadowRayEnd, SphereNormal, TotalReflection,
 };
 use super::variant::{CourseShape, course_shape};
 use durer_render::integrator::media::MediumStack;
@@ -25,7 +25,8 @@ use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use durer_scene::shape::{Primitive, SurfacePoint};
 use smallvec::SmallVec;
 
-/// Least distance by which rays start on the wrong side of a surface.
+/// Least distance by which rays start in front of a surface if rounding must not decide whether
+/// they hit it.
 const FRONT: f32 = 1e-3;
 
 /// Whitted ray tracer that makes the mistakes in `bugs`, as a student's program might.
@@ -95,6 +96,7 @@ impl<'w> BuggyTracer<'w> {
         match self.bugs.sky.filter(|(_, all)| path.first || *all) {
             Some((color, _)) => color,
             None if self.bugs.bounces.black_sky && !path.first => Color::ZERO,
+            None if self.bugs.ambient_sky => self.sky(ray.dir()) + self.world.ambient(),
             None => self.sky(ray.dir()),
         }
     }
@@ -148,8 +150,8 @@ impl<'w> BuggyTracer<'w> {
             let [u, v, w] = permuted(bugs.colors.uv_permutation, hit.uv);
             surface.uv = (u * a + v * b + w * c).into();
         }
-        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (SphereNormal::Position | SphereNormal::Long)) =
-            (&object.geometry, bugs.sphere_normals)
+        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball) = (&object.geometry, bugs.sphere_normals)
+            && ball != SphereNormal::Correct
         {
             let to_world = object.to_world.as_ref();
             let local = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
@@ -159,6 +161,7 @@ impl<'w> BuggyTracer<'w> {
                 }
                 (SphereNormal::Position, None) => (local + object.center).normalize_or_zero(),
                 (_, Some(_)) => surface.n_shade,
+                (SphereNormal::OverSquare, None) => surface.n_shade / sphere.radius,
                 (_, None) => surface.n_shade * sphere.radius,
             };
         }
@@ -192,9 +195,11 @@ impl<'w> BuggyTracer<'w> {
         }
         let parts = self.materials_at(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
-        let view = match bugs.highlights.from_eye {
-            true => (surface.position - world.camera().pose().center).normalize_or(ray.dir()),
-            false => ray.dir(),
+        let pose = world.camera().pose();
+        let view = match bugs.highlights {
+            HighlightBugs { along_axis: true, .. } => pose.direction.normalize_or(ray.dir()),
+            HighlightBugs { from_eye: true, .. } => (surface.position - pose.center).normalize_or(ray.dir()),
+            _ => ray.dir(),
         };
         if bugs.unlit {
             color = parts.iter().map(|part| part.share * self.diffuse_color(part.phong, at)).sum();
@@ -218,7 +223,7 @@ impl<'w> BuggyTracer<'w> {
             let mut any = world.lights().is_empty();
             let mut greatest = Color::ZERO;
             for (number, light) in world.lights().iter().enumerate() {
-                let li = self.illuminated(light, surface.point());
+                let li = self.illuminated(light, surface.point(), at.hit.t);
                 let casts = bugs.shadows.only_light.is_none_or(|only| only == number);
                 let visible = if casts { self.visible(surface, number, &li, path.first) } else { Color::ONE };
                 let visible = if bugs.shadows.later_too && blocked { Color::ZERO } else { visible };
@@ -277,6 +282,9 @@ impl<'w> BuggyTracer<'w> {
         if bugs.bounces.mixed && path.bounces > 0 {
             color *= Color::ONE - SpecularBlend::of(&parts).reflective;
         }
+        if bugs.bounces.glass_mixed.is_some() && path.bounces > 0 {
+            color *= Color::ONE - SpecularBlend::of(&parts).transparent;
+        }
         if path.bounces > 0 {
             let rounds = if bugs.bounces.each_light { world.lights().len() } else { 1 };
             let secondary = self.secondary(at, &parts, transition.unwrap_or_default(), path);
@@ -297,6 +305,10 @@ impl<'w> BuggyTracer<'w> {
         let unshadowed = self.bugs.bounces.unshadowed && !first;
         if !self.settings.shadows || unshadowed || li.color == Color::ZERO {
             return Color::ONE;
+        }
+        let blocked = bugs.blocked_lights[usize::from(!first)];
+        if blocked.checked_shr(light as u32).is_some_and(|rest| rest & 1 == 1) {
+            return Color::ZERO;
         }
         let rules = self.world.shading_rules();
         let way = rules.epsilon.and_then(|_| self.world.course_light_direction(light, surface.position));
@@ -387,6 +399,7 @@ impl<'w> BuggyTracer<'w> {
         if reflective == Color::ZERO && transparent == Color::ZERO {
             return Color::ZERO;
         }
+        let opaque = Color::ONE - transparent;
         let SurfaceInteraction { ray, surface, .. } = at;
         let leaving = self.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
@@ -481,13 +494,21 @@ impl<'w> BuggyTracer<'w> {
                 true => weight * parts.iter().map(|p| p.share * self.diffuse_color(p.phong, at)).sum::<Color>(),
                 false => weight,
             };
-            let start = match bugs.from_eye {
+            let mut start = match bugs.from_eye {
                 true => {
                     SurfacePoint { position: self.world.camera().pose().center, rounding_error: Vec3::ZERO, ..*surface }
                 }
                 false => *surface,
             };
+            // A ray along a surface does not hit it, except by rounding.
+            let height = if bugs.mirror == Mirror::Along { FRONT } else { bugs.mirror_height };
+            if height != 0.0 {
+                start.position += height * n;
+            }
             color += self.bounce(&start, mirrored, weight, path.clone());
+            if bugs.glass_mixed == Some(true) {
+                color *= opaque;
+            }
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !bugs.no_glass) {
             let weight = if bugs.glass_in_full { Color::ONE } else { transparent };

@@ -69,6 +69,8 @@ pub enum SphereNormal {
     Position,
     /// The normal is p - center.
     Long,
+    /// The normal is (p - center) / r², for a sphere whose radius should be r² instead of r.
+    OverSquare,
 }
 
 /// Method by which a student's tracer transforms normals from object to world space.
@@ -193,6 +195,11 @@ pub enum Attenuation {
     Root,
     /// The light is divided by the scene's polynomial of d².
     SquaredTwice,
+    /// The light is divided by the scene's polynomial of the length of the ray that hits the
+    /// surface.
+    RayLength,
+    /// The light is divided by the scene's polynomial of the distance from the eye to the light.
+    FromEye,
 }
 
 /// Formula by which a student's tracer computes the direction L to a point light, and sometimes the
@@ -352,6 +359,8 @@ pub struct HighlightBugs {
     pub mirror: Mirror,
     /// The view direction points to the eye, even at hits of mirrored rays.
     pub from_eye: bool,
+    /// The view direction is that of the camera, the same at all hits.
+    pub along_axis: bool,
     /// Only the first hit of a camera ray has highlights.
     pub first_only: bool,
 }
@@ -397,6 +406,9 @@ pub struct ShadowBugs {
     pub ambient_of_any: bool,
     /// Only the light with this index casts shadows.
     pub only_light: Option<usize>,
+    /// Lights, as sets of bits, that are blocked at the first hit of a camera ray and at other
+    /// hits.
+    pub blocked_lights: [u32; 2],
     /// Transparent objects cast no shadows.
     pub no_glass: bool,
     /// Direction of shadow rays.
@@ -441,6 +453,9 @@ pub struct SecondaryBugs {
     pub fresnel: Fresnel,
     /// The local light is multiplied by 1 minus the mirror's colour.
     pub mixed: bool,
+    /// The local light is multiplied by 1 minus the glass's colour. With `true`, so is the
+    /// reflected light.
+    pub glass_mixed: Option<bool>,
     /// Reflected light is multiplied by the diffuse colour.
     pub times_diffuse: bool,
     /// Mirrors have no local light.
@@ -457,6 +472,8 @@ pub struct SecondaryBugs {
     pub no_ambient: bool,
     /// Mirrored rays start at the eye.
     pub from_eye: bool,
+    /// Distance above the surface at which mirrored rays start.
+    pub mirror_height: f32,
     /// Distance at which secondary rays start, if it is different.
     pub epsilon: Option<f32>,
 }
@@ -511,6 +528,8 @@ pub struct Bugs {
     pub sphere_normals: SphereNormal,
     /// Colour of camera rays that miss everything. With `true`, other rays also return it.
     pub sky: Option<(Color, bool)>,
+    /// The ambient light is added to the background.
+    pub ambient_sky: bool,
     /// Mistakes in lights.
     pub lights: LightBugs,
     /// Mistakes in highlights.

@@ -291,20 +291,23 @@ impl<'a> Search<'a> {
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
             return trial.mistakes.clone();
         }
-        let explained = |value: f32, pixels: &Pixels| self.trial(vec![(mistake, value)], pixels).fit.explained;
-        let (mut best, mut at, mut step) = (explained(value, few), value, 1.5_f32);
+        let fit = |value: f32, pixels: &Pixels| self.trial(vec![(mistake, value)], pixels).fit;
+        let (mut best, mut at, mut step) = (fit(value, few), value, 1.5_f32);
         for _ in 0..7 {
             for tried in [at / step, at * step] {
-                let explained = explained(tried, few);
-                if explained > best {
-                    (best, at) = (explained, tried);
+                let fit = fit(tried, few);
+                // Several values can explain everything except for ignored outliers.
+                let matches = fit.explained == best.explained && fit.matched > best.matched;
+                if fit.explained > best.explained || matches {
+                    (best, at) = (fit, tried);
                 }
             }
             step = step.sqrt();
         }
         // Prefer the roundest number that fits as well.
-        let least = explained(at, more) - 0.002;
-        let fits = |tried: &f32| *tried > 0.0 && (tried / at - 1.0).abs() < 0.05 && explained(*tried, more) >= least;
+        let best = fit(at, more);
+        let as_good = |fit: Fit| fit.explained >= best.explained - 0.002 && fit.matched >= best.matched - 0.01;
+        let fits = |tried: &f32| *tried > 0.0 && (tried / at - 1.0).abs() < 0.05 && as_good(fit(*tried, more));
         vec![(mistake, round_numbers(at).into_iter().find(fits).unwrap_or(at))]
     }
 
@@ -384,23 +387,34 @@ impl<'a> Search<'a> {
         }
         let width = self.question.job.width as usize;
         let differ = speckles::isolated_pixels(reference, test, width)?;
-        let pixels: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
         // If there is acne, reflected rays return nothing or hit their own surface again.
-        let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
-        let dark = |of: u32| {
-            let (off, way) = (of / bounces, of % bounces);
+        let ways = if self.base.settings.bounces > 0 { 3 } else { 1 };
+        let dark = |blocked_lights: [u32; 2], way: u32, differ: &[usize]| {
             let mut variant = self.base.clone();
             match way {
                 0 => {}
                 1 => variant.settings.bounces = 0,
                 _ => variant.bugs.bounces.epsilon = Some(-1e-3),
             }
-            variant.world.edit().lights =
-                (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights()[i].clone()).collect();
+            variant.bugs.shadows.blocked_lights = blocked_lights;
+            let pixels: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
             self.view.picture(&variant, &pixels)
         };
-        let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();
-        let share = speckles::share(test, &differ, &shadowed)?;
+        let shadowed: Vec<Vec<Vec3>> = (1..ways << lights).map(|of| dark([of / ways; 2], of % ways, &differ)).collect();
+        let mut unlike = speckles::unlike(test, &differ, &shadowed);
+        let share = speckles::share(&differ, &unlike).or_else(|| {
+            if ways == 1 || 2 * unlike.len() > differ.len() {
+                return None;
+            }
+            // If only shadow rays are wrong, a mirror and what it shows have specks of their own.
+            let sets = 0..1_u32 << lights;
+            for first in sets.clone() {
+                let others = sets.clone().filter(|other| *other != first);
+                let shadowed: Vec<Vec<Vec3>> = others.map(|other| dark([first, other], 0, &unlike)).collect();
+                unlike = speckles::unlike(test, &unlike, &shadowed);
+            }
+            speckles::share(&differ, &unlike)
+        })?;
         let mistake = super::table::mistake_by_name("epsilon-0")?;
         Some(Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }

@@ -70,7 +70,7 @@ pub(super) fn fit(reference: &[Vec3], test: &[Vec3], rendered: &[Vec3]) -> Fit {
 }
 
 /// Selects at most `most` pixels. Half of them are evenly spread, and half are where the pictures
-/// differ.
+/// differ, or around these pixels if they are few.
 pub(super) fn sampled(width: u32, reference: &[Vec3], test: &[Vec3], most: usize) -> Vec<usize> {
     let all = reference.len();
     if all <= most {
@@ -89,10 +89,35 @@ pub(super) fn sampled(width: u32, reference: &[Vec3], test: &[Vec3], most: usize
     differ.sort_by_key(|i| (i / width as usize / 8, i % width as usize / 8));
     let mut chosen: Vec<usize> = spread(all, most / 2).collect();
     match differ.len() {
-        few if few <= most / 2 => chosen.extend(differ),
+        few if few <= most / 2 => {
+            chosen.extend(around(width as usize, all, &differ, most / 2 - few));
+            chosen.extend(differ);
+        }
         many => chosen.extend(spread(many, most / 2).map(|i| differ[i])),
     }
     chosen.sort_unstable();
     chosen.dedup();
     chosen
+}
+
+/// Returns at most `count` pixels around others, starting with the nearest. There, too large a
+/// value of a mistake shows.
+fn around(width: usize, all: usize, pixels: &[usize], count: usize) -> Vec<usize> {
+    let mut known = vec![false; all];
+    pixels.iter().for_each(|&i| known[i] = true);
+    let mut found = pixels.to_vec();
+    let mut next = 0;
+    while next < found.len() && found.len() < pixels.len() + count {
+        let i = found[next];
+        let beside = [(!i.is_multiple_of(width)).then(|| i - 1), (i % width + 1 < width).then_some(i + 1)];
+        for j in beside.into_iter().flatten().chain(i.checked_sub(width)).chain(Some(i + width)) {
+            if j < all && !known[j] {
+                known[j] = true;
+                found.push(j);
+            }
+        }
+        next += 1;
+    }
+    found.truncate(pixels.len() + count);
+    found.split_off(pixels.len())
 }

@@ -34,13 +34,17 @@ pub(super) fn isolated_pixels(reference: &[Vec3], test: &[Vec3], width: usize) -
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
-/// Returns the fraction of the differing pixels that are as dark as in the shadow of some lights,
-/// if it is at least `MIN_MATCHING`. `shadowed` contains the values of these pixels in pictures
-/// with one or more lights switched off.
-pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
+/// Returns the differing pixels that are not as dark as in the shadow of some lights. `shadowed`
+/// contains the values of all these pixels in pictures with one or more lights blocked.
+pub(super) fn unlike(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Vec<usize> {
     let alike =
         |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= VISIBLE);
-    let of_kind = differ.iter().enumerate().filter(|of| alike(*of)).count();
-    let share = of_kind as f64 / differ.len().max(1) as f64;
+    differ.iter().enumerate().filter(|of| !alike(*of)).map(|(_, &i)| i).collect()
+}
+
+/// Returns the fraction of the differing pixels that are as dark as in shadow, if it is at least
+/// `MIN_MATCHING`. `unlike` contains the others.
+pub(super) fn share(differ: &[usize], unlike: &[usize]) -> Option<f64> {
+    let share = (differ.len() - unlike.len()) as f64 / differ.len().max(1) as f64;
     (share >= MIN_MATCHING).then_some(share)
 }

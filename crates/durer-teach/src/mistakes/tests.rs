@@ -439,6 +439,86 @@ fn mistakes_in_mirrors_and_transforms_are_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Spheres with other radii than 1, of which one is a mirror and one is glass.
+const SPHERES: &str = "PerspectiveCamera { center 0 1.5 9 direction 0 -0.15 -1 up 0 1 0 angle 36 }
+Lights { DirectionalLight { direction 0.5 -1 -0.4 color 0.6 0.55 0.5 }
+  PointLight { position -3 3 3 color 2 2.4 3 attenuation 0.2 0.1 0.1 } }
+Background { color 0.2 0.3 0.5 ambientLight 0.15 0.15 0.1 }
+Materials {
+  Material { diffuseColor 0.8 0.25 0.1 specularColor 0.4 0.5 0.4 exponent 20 }
+  Material { diffuseColor 0.15 0.15 0.2 specularColor 0.6 0.6 0.6 exponent 60 reflectiveColor 0.6 0.65 0.5 }
+  Material { diffuseColor 0.2 0.3 0.2 transparentColor 0.7 0.8 0.7 indexOfRefraction 1.4 reflectiveColor 0.1 0.1 0.1 }
+  Material { diffuseColor 0.6 0.65 0.5 } }
+Group {
+  MaterialIndex 0 Sphere { center -1.3 0.2 0 radius 1.2 }
+  MaterialIndex 1 Sphere { center 1.2 -0.2 0.4 radius 0.8 }
+  MaterialIndex 2 Sphere { center 0.1 -0.3 2 radius 0.6 }
+  MaterialIndex 3 Plane { normal 0 1 0 offset -1 } }
+";
+
+const AMONG_SPHERES: [(&str, f32); 19] = [
+    ("radius-not-squared", 0.0),
+    ("radius-not-squared", 1.0),
+    ("radius-not-squared", 2.0),
+    ("sphere-normals", 1.0),
+    ("sphere-normals", 2.0),
+    ("mirror-along", 0.0),
+    ("mirror-along", 1.0),
+    ("mirror-start", 0.3),
+    ("mirror-start", 0.25),
+    ("mirror-mixed", 0.0),
+    ("glass-mixed", 0.0),
+    ("glass-mixed", 1.0),
+    ("falloff-of-other-length", 0.0),
+    ("falloff-of-other-length", 1.0),
+    ("highlight-along-axis", 0.0),
+    ("ambient-sky", 0.0),
+    ("shadows-of-one-object", 0.0),
+    ("epsilon-large", 0.35),
+    ("epsilon-large", 0.5),
+];
+
+#[test]
+fn mistakes_among_spheres_are_named() {
+    let large = || Job { width: 96, height: 96, ..job() };
+    let wrong: Vec<String> =
+        AMONG_SPHERES.iter().filter_map(|(name, value)| unnamed(SPHERES, large(), name, *value)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Shadow rays hit the surface that they leave, but mirrored rays do not. A mirror and what it
+/// shows then have different specks.
+#[test]
+fn acne_is_recognised_in_mirrors() {
+    let (scene, world) = world_of(SPHERES, Dialect::F04.rules());
+    let job = Job { width: 96, height: 96, ..job() };
+    let right = SceneVariant::new(&scene, world, job.settings);
+    let blocked = |first: u32, later: u32| {
+        let mut variant = right.clone();
+        variant.bugs.shadows.blocked_lights = [first, later];
+        picture(&variant, &job, 1.0).0
+    };
+    let pictures: Vec<Picture> = (0..16).map(|sets| blocked(sets / 4, sets % 4)).collect();
+    let reference = &pictures[0];
+    let mut test = reference.clone();
+    for (i, pixel) in test.image.pixels.iter_mut().enumerate() {
+        // Specks without any pattern, in half of the pixels.
+        let mixed = (i as u32).wrapping_mul(0x9e37_79b9);
+        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 16;
+        if mixed % 32 < 16 {
+            *pixel = pictures[mixed as usize % 16].image.pixels[i];
+        }
+    }
+    let transfer = Transfer::Course;
+    let input = DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference, test: &test };
+    let diagnosis = diagnose(&input, &|_| {});
+    assert_eq!(
+        diagnosis.explanations.first().map(|first| first.mistakes[0].0.name),
+        Some("epsilon-0"),
+        "{diagnosis:?}"
+    );
+}
+
 /// The official program of 2016 counts a hit at the start of a ray, so each hit would follow
 /// itself.
 #[test]

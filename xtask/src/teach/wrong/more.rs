@@ -240,6 +240,33 @@ pub const SINGLE: &[(&str, &[&str])] = &[
     ("turned", &["normals-inverse", "normals-transposed", "normals-moved-long"]),
     ("fresnel", &["shadow-fronts", "fresnel-exchanged", "root-added"]),
     ("ours", &["wrapped", "border-columns"]),
+    (
+        "lamps",
+        &[
+            "highlight-along-axis",
+            "falloff-of-ray",
+            "falloff-of-eye",
+            "shadows-of-one-object",
+            "ambient-sky",
+            "sphere-normals-long",
+            "radius-not-squared",
+        ],
+    ),
+    (
+        "mirrors",
+        &[
+            "highlight-along-axis",
+            "falloff-of-ray",
+            "shadows-of-one-object",
+            "ambient-sky",
+            "sphere-normals-long",
+            "radius-not-squared",
+            "mirror-along-unit",
+            "mirror-start",
+        ],
+    ),
+    ("glass", &["glass-mixed", "ambient-sky"]),
+    ("falloff", &["highlight-along-axis", "falloff-of-ray", "falloff-of-eye"]),
 ];
 
 /// Returns the name in the library's table for a mistake of the judge's tracer, if it differs.
@@ -265,6 +292,9 @@ pub fn description(made: &str) -> Option<&'static str> {
         "center-over-less-one" => "pixel-center-over-n-less-one",
         "exponent-4" => "exponent",
         "falloff-of-highlights" => "falloff-of-one-term",
+        "falloff-of-ray" | "falloff-of-eye" => "falloff-of-other-length",
+        "sphere-normals-long" => "sphere-normals",
+        "mirror-along-unit" => "mirror-along",
         _ => return None,
     })
 }

@@ -23,6 +23,9 @@ const MIXED: f64 = 0.95;
 /// ratio is two thirds.
 const SMOOTHER: f64 = 0.85;
 
+/// Maximum share of the difference in pixels whose neighbours differ alike. Other sample positions
+/// change only narrow lines.
+const MAX_INSIDE: f64 = 0.25;
 /// If less than one in this number of pixels at edges differs, the cause is rounding.
 const MIN_CHANGED_EDGES: usize = 40;
 /// Minimum share of the difference in pixels whose colours also occur near them in the reference.
@@ -173,7 +176,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     }?;
     let words = format!("the pictures differ only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
     let is_mixed = mixed(reference, test, &at_edges) > MIXED;
-    (share < 0.4 && is_mixed && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
+    let is_narrow = inside(reference, test, &at_edges) < MAX_INSIDE;
+    (share < 0.4 && is_mixed && is_narrow && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
         kind: "edges",
         description: words,
         explained,
@@ -201,6 +205,13 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     };
     let is_between = |s: &&Sample| between(s.test, reference, s) || between(s.reference, test, s);
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
+}
+
+/// Returns the share of the squared difference in pixels that at most one neighbour differs from,
+/// as in areas that are shaded differently.
+fn inside(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
+    let is_inside = |s: &&Sample| dissimilar_neighbours(reference, test, s) <= 1;
+    difference(&at_edges.iter().filter(is_inside).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
 /// Returns true if the areas on both sides of the differing edges are equal in both pictures.

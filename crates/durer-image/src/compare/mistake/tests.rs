@@ -183,6 +183,25 @@ fn specks_are_not_taken_for_samples() {
     assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
 }
 
+/// Highlights that are elsewhere differ in their steep parts, which are no edges.
+#[test]
+fn moved_highlights_are_not_taken_for_samples() {
+    let shiny = |across: f32| {
+        move |x: usize, y: usize| {
+            let normal = |cx: f32, cy: f32, radius: f32| {
+                let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
+                let squared = 1.0 - dx * dx - dy * dy;
+                (squared > 0.0).then(|| Vec3::new(dx, dy, squared.sqrt()))
+            };
+            let toward = Vec3::new(across, -0.5, 1.0).normalize();
+            let cosine = normal(30.0, 35.0, 12.0).or(normal(55.0, 50.0, 30.0)).map_or(0.0, |n| n.dot(toward));
+            scene(x, y) * 0.6 + 0.4 * fp::pow(cosine.max(0.0), 30.0)
+        }
+    };
+    let found = findings(&shiny(-0.5), &shiny(-0.45));
+    assert!(found.iter().all(|f| f.kind != "edges"), "{found:?}");
+}
+
 #[test]
 fn other_colors_are_neither_brighter_nor_darker() {
     let recolored = |x: usize, y: usize| {

@@ -10,7 +10,8 @@ use glam::DVec3;
 
 impl BuggyTracer<'_> {
     /// Returns the incident light, including mistakes in its direction and attenuation.
-    pub(super) fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
+    /// `ray_length` is the distance from the origin of the ray to the point.
+    pub(super) fn illuminated(&self, light: &Light, point: DVec3, ray_length: f32) -> LightLiSample {
         let mut li = light.illuminate(point);
         if self.bugs.lights.all_negated {
             li.to_light = -li.to_light;
@@ -20,21 +21,21 @@ impl BuggyTracer<'_> {
             Light::Directional(_) if self.bugs.lights.negated => li.to_light = -li.to_light,
             Light::Point(point) => {
                 let d = li.distance;
+                let falloff = |d: f32| {
+                    let a = point.attenuation.unwrap_or(Vec3::X);
+                    a.x + a.y * d + a.z * d * d
+                };
                 match self.bugs.lights.attenuation {
                     Attenuation::Correct => {}
-                    Attenuation::Multiplied => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color * (a.x + a.y * d + a.z * d * d);
-                    }
+                    Attenuation::Multiplied => li.color = point.color * falloff(d),
                     Attenuation::Linear => li.color = point.color / d,
                     Attenuation::Square => li.color = point.color / (d * d),
-                    Attenuation::SquaredTwice => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
-                    }
-                    Attenuation::Root => {
-                        let a = point.attenuation.unwrap_or(Vec3::X);
-                        li.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
+                    Attenuation::SquaredTwice => li.color = point.color / falloff(d * d),
+                    Attenuation::Root => li.color = point.color / falloff(d).sqrt(),
+                    Attenuation::RayLength => li.color = point.color / falloff(ray_length),
+                    Attenuation::FromEye => {
+                        let eye = self.world.camera().pose().center;
+                        li.color = point.color / falloff((point.position - eye).length());
                     }
                 }
                 match self.bugs.lights.points {
@@ -42,16 +43,15 @@ impl BuggyTracer<'_> {
                     PointLightDirection::Negated => li.to_light = -li.to_light,
                     PointLightDirection::Position => li.to_light = point.position.normalize_or(li.to_light),
                     PointLightDirection::PositionAlone => {
-                        let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
+                        let d = point.position.length();
                         li.to_light = point.position.normalize_or(li.to_light);
-                        (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                        (li.color, li.distance) = (point.color / falloff(d), d);
                     }
                     PointLightDirection::FromEye(whole) => {
                         let way = point.position - self.world.camera().pose().center;
                         li.to_light = way.normalize_or(li.to_light);
                         if whole {
-                            let (a, d) = (point.attenuation.unwrap_or(Vec3::X), way.length());
-                            (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                            (li.color, li.distance) = (point.color / falloff(way.length()), way.length());
                         }
                     }
                     PointLightDirection::MinusPosition => li.to_light = -point.position.normalize_or(li.to_light),

@@ -198,7 +198,16 @@ pub(super) const MISTAKES: &[Mistake] = &[
             v.bugs.bounces.epsilon = Some(epsilon);
         },
     )
-    .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
+    .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0, 0.2, 0.3])),
+    row(
+        "mirror-start",
+        "epsilon",
+        "mirrored rays start too far above the surface: by {}",
+        "Ray(p, R), hits count at t > 1e-4",
+        "Ray(p + {} * N, R)",
+        |v, height| v.bugs.bounces.mirror_height = height,
+    )
+    .with(Values::Numbers(&[0.1, 0.3, 1.0])),
     row(
         "epsilon-0",
         "epsilon",
@@ -273,6 +282,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "(1 - kr) * local + kr * trace(p, R)",
         |v, _| v.bugs.bounces.mixed = true,
     ),
+    row(
+        "glass-mixed",
+        "refraction",
+        "the local light {of glass is|and the mirrored light of glass are} scaled by 1 minus the glass's colour",
+        "local + kr * trace(p, R) + kt * trace(p, T)",
+        "{(1 - kt) * local + kr * trace(p, R)|(1 - kt) * (local + kr * trace(p, R))} + kt * trace(p, T)",
+        |v, mirrored| v.bugs.bounces.glass_mixed = Some(mirrored > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "mirror-instead",
         "reflection",

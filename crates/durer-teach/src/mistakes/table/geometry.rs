@@ -129,12 +129,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "sphere-normals",
         "normals",
-        "normals of spheres {are taken from the origin, not from the centre|are not normalised}",
+        "normals of spheres {are taken from the origin, not from the centre|are not normalised|are not normalised}",
         "N = normalize(p - center)",
-        "N = {normalize(p)|p - center}",
-        |v, how| v.bugs.sphere_normals = if how == 0.0 { SphereNormal::Position } else { SphereNormal::Long },
+        "N = {normalize(p)|p - center|p - center, with R and T normalised}",
+        |v, how| {
+            v.bugs.sphere_normals = if how == 0.0 { SphereNormal::Position } else { SphereNormal::Long };
+            v.bugs.bounces.unit = how == 2.0;
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "sphere-roots",
         "distance",
@@ -296,15 +299,20 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "distance",
         "the radius of spheres is not squared",
         "c = |o - center|^2 - r * r",
-        "c = |o - center|^2 - r",
-        |v, _| {
+        "c = |o - center|^2 - r, N = {normalize(p - center)|(p - center) / r|(p - center) / r, with R and T normalised}",
+        |v, how| {
             v.objects(|geometry| {
                 if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
                     sphere.radius = sphere.radius.max(0.0).sqrt();
                 }
             });
+            if how > 0.0 {
+                v.bugs.sphere_normals = SphereNormal::OverSquare;
+                v.bugs.bounces.unit = how == 2.0;
+            }
         },
-    ),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "center-ignored",
         "distance",

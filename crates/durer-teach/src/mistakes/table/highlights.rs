@@ -168,6 +168,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.bugs.highlights.from_eye = true,
     ),
     row(
+        "highlight-along-axis",
+        "specular",
+        "the highlights use the direction of the camera, which is the same in all pixels, instead of the ray's",
+        "V = -d",
+        "V = -normalize(direction of the camera)",
+        |v, _| v.bugs.highlights.along_axis = true,
+    ),
+    row(
         "colors-exchanged",
         "specular",
         "the diffuse and the specular colour are exchanged",

@@ -114,6 +114,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
+        "ambient-sky",
+        "flat",
+        "the ambient light is added to the background",
+        "if (!hit) return background",
+        "if (!hit) return background + ambient",
+        |v, _| v.bugs.ambient_sky = true,
+    ),
+    row(
         "light-missing",
         "diffuse",
         "light {} (counted from 0) contributes nothing",
@@ -471,6 +479,16 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "d = dot(v, v), I = color / (a0 + a1 d + a2 d^2)",
         |v, _| v.bugs.lights.attenuation = Attenuation::SquaredTwice,
     ),
+    row(
+        "falloff-of-other-length",
+        "diffuse",
+        "light fades with {the length of the ray that hits the surface|the distance from the eye to the light} instead \
+         of the distance to the light",
+        "I = color / (a0 + a1 d + a2 d^2) with d = length(position - p)",
+        "the same formula with d = {t of the ray|length(position - eye)}",
+        |v, eye| v.bugs.lights.attenuation = if eye == 0.0 { Attenuation::RayLength } else { Attenuation::FromEye },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "ambient-factor",
         "diffuse",

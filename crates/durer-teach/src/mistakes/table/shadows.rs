@@ -184,6 +184,22 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
+        "shadows-of-one-object",
+        "shadows",
+        "only the {first|last} object in the file casts shadows",
+        "for each object if (object.intersect(...)) return true",
+        "for each object {return object.intersect(...)|occluded = object.intersect(...)}",
+        |v, last| {
+            v.change_shadow_world(|v| {
+                let only = if last == 0.0 { 0 } else { v.world.objects().len().saturating_sub(1) };
+                let mut number = 0..;
+                v.world.edit().objects.retain(|_| number.next() == Some(only));
+                v.objects(|_| {});
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
         "shadows-diffuse",
         "shadows",
         "diffuse light remains in shadow: only highlights are missing",
