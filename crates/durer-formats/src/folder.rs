@@ -171,7 +171,11 @@ impl FolderSource {
             let wrong =
                 path.ancestors().find(|part| part.parent().is_some_and(|folder| or_current(folder).is_dir()))?;
             let folder = or_current(wrong.parent()?).canonicalize().ok().filter(|folder| self.allows(folder))?;
-            let is_fitting = |entry: &fs::DirEntry| wrong == path || entry.path().is_dir();
+            // A mesh cannot replace a picture, or the reverse.
+            let is_fitting = |entry: &fs::DirEntry| match wrong == path {
+                true => is_mesh(&entry.path()) == is_mesh(path),
+                false => entry.path().is_dir(),
+            };
             let names: Vec<String> = fs::read_dir(folder)
                 .ok()?
                 .filter_map(|entry| entry.ok().filter(is_fitting)?.file_name().into_string().ok())
@@ -241,6 +245,12 @@ fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     }
     let candidate = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
     candidate.is_file().then_some(candidate)
+}
+
+/// Returns true if the name of a file ends like that of a mesh.
+fn is_mesh(path: &Path) -> bool {
+    let end = path.extension().unwrap_or_default().to_ascii_lowercase();
+    ["obj", "ply", "stl", "off"].iter().any(|mesh| end == *mesh)
 }
 
 /// Returns the folder, or `.` in place of an empty path.

@@ -88,8 +88,8 @@ impl RenderReview<'_> {
         let reported: Vec<_> =
             serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MAX_PRINTED).copied().collect();
         print_error_line(&match (serious.is_empty(), reported.is_empty()) {
-            (true, _) if fault == Some(PictureFault::Dark) => {
-                format!("note: {what}; `--exposure auto` makes it brighter")
+            (true, _) if matches!(fault, Some(PictureFault::Dark | PictureFault::White)) => {
+                format!("note: {what}; `--exposure auto` chooses another exposure")
             }
             (true, _) => format!("warning: {what}"),
             (false, true) => format!("warning: {what}; the findings above explain why"),

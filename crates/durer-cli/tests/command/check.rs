@@ -461,3 +461,51 @@ fn causes_in_a_stage_are_named() {
     let output = folder.expect_exit(0, "check stage.txt").out;
     assert!(output.contains("no findings"), "{output}");
 }
+
+/// The help of a finding fits the mistake, and nothing else is blamed.
+#[test]
+fn help_fits_the_mistake() {
+    let folder = TestFolder::new();
+    let said = |text: &str, options: &str| {
+        folder.write("a.txt", text);
+        folder.run(&format!("check a.txt {options}")).out
+    };
+    let scene = |camera: &str, rest: &str, material: &str, object: &str| {
+        format!(
+            "PerspectiveCamera {{ {camera} up 0 1 0 angle 35 }}\n{rest}\nMaterials {{ {material} }}\nGroup {{ \
+             MaterialIndex 0 Sphere {{ center 0 1 0 radius 1 }} Plane {{ normal 0 1 0 offset 0 }} {object} }}\n"
+        )
+    };
+    let (view, layered) = ("center 0 2 9 direction 0 -0.15 -1", "PrincipledMaterial { baseColor 0.6 0.6 0.6 }");
+    // An axis is a direction and not a point, if its negation is right.
+    let photometry = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 30\n0 45 90\n0\n1300 900 0\n";
+    folder.write("lamp.ies", photometry);
+    let up = "Lights { PhotometricLight { position 0.3 5 0.2 file lamp.ies direction 0 1 0 } }";
+    let lamp = said(&scene(view, up, layered, ""), "--integrator path");
+    assert!(lamp.contains("negate the direction: write `direction 0 -1 0`"), "{lamp}");
+    // The time zone or the sign of the longitude is wrong.
+    let place = "Background { latitude 35.7 longitude -139.7 date 2024 6 21 time 16 0 0 timeZone 9 }";
+    let sun = said(&scene(view, place, layered, ""), "--integrator path --exposure -14");
+    assert!(sun.contains("try `timeZone -9`, or `longitude 139.7`"), "{sun}");
+    // The camera's direction is a position.
+    let lights = "Lights { DirectionalLight { direction -1 -2 -1 color 1 1 1 } }";
+    let phong = "PhongMaterial { diffuseColor 0.6 0.6 0.6 }";
+    let inside = said(&scene("center 0.1 1 -0.1 direction 1 3 12", lights, phong, ""), "");
+    assert!(inside.contains("write `center 1 3 12`"), "{inside}");
+    // The ground is too high, and an object far too large.
+    let ball = |center: &str| format!("Sphere {{ center {center} radius 800 }}");
+    let low = said(&scene(view, lights, phong, &ball("0 -790 0")), "");
+    assert!(low.contains("lower it by 10") && low.contains("at 0 -800 0") && low.contains("a.txt:4:"), "{low}");
+    let large = said(&scene(view, lights, phong, &ball("0 0 0")), "--shadows=on");
+    assert!(large.contains("are inside the `Sphere`") && !large.contains("move the camera"), "{large}");
+    // A flat object is not hidden by a plane.
+    let text = scene(view, lights, phong, "Transform { Scale 1 0 1 Box { min -3 0 -1 max -2 1 1 } }");
+    let flat = said(&text, "--dialect f16");
+    assert!(flat.contains("flat-transform") && !flat.contains("unseen"), "{flat}");
+    // An invalid value comes before its consequences.
+    let text = scene(view, lights, "Material { diffuseColor 1 1 1 specularColor 1 1 1 shininess -8 }", "");
+    let negative = said(&text, "--dialect f16");
+    assert!(!negative.contains("pow-zero") && !negative.contains("too-bright"), "{negative}");
+    let [value, sample] = ["bad-value", "not-finite"].map(|code| negative.find(code));
+    assert!(value.is_some() && (sample.is_none() || value < sample), "{negative}");
+}

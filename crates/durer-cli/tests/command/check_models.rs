@@ -111,6 +111,7 @@ const CASES: &[Case] = &[
     ("pbrt", PBRT, &[], ""),
     ("pbrt", PBRT, &[("\"integer maxdepth\" 8", "\"integer maxdepth\" 0")], "no-bounces"),
     ("pbrt", PBRT, &[("Rotate 90", "Rotate -90")], "lamp-turned"),
+    ("pbrt", PBRT, &[("Rotate 90", "Rotate 1.5708")], "radians"),
     ("pbrt", PBRT, &[("\"float fov\" 36", "\"float fov\" 0.6")], "too-narrow"),
     (
         "pbrt",
@@ -203,6 +204,14 @@ const CASES: &[Case] = &[
         &[("<float name=\"fov\"", "<float name=\"far_clip\" value=\"3\"/><float name=\"fov\"")],
         "clipped",
     ),
+    // The far distance cuts away the ball, but not all of the floor.
+    (
+        "xml",
+        MITSUBA,
+        &[("<float name=\"fov\"", "<float name=\"far_clip\" value=\"6.5\"/><float name=\"fov\"")],
+        "clipped",
+    ),
+    ("xml", MITSUBA, &[("value=\"7,7,6\"", "value=\"0,0,0\"")], "black-light"),
     ("xml", MITSUBA, &[("value=\"0.5,0.5,0.48\"", "value=\"128, 128, 122\"")], "color-range"),
     // The light is below the floor and faces down.
     (
@@ -224,6 +233,8 @@ const CASES: &[Case] = &[
     ),
     ("rad", RADIANCE, &[("5 0.5 0.5 0.48", "5 178 26 26")], "color-range"),
     ("rad", RADIANCE, &[("12  -4 -4 0", "9  -4 -4 0")], "bad-value"),
+    ("rad", RADIANCE, &[("12  -4 -4 0", "15  -4 -4 0")], "bad-value"),
+    ("rad", RADIANCE, &[("4 0 0 1 1", "4 0 0 800 800")], "out-of-scale"),
     ("gltf", GLTF, &[], ""),
     ("gltf", GLTF, &[("\"yfov\":0.6", "\"yfov\":35")], "CAMERA_YFOV_GEQUAL_PI"),
     ("gltf", GLTF, &[("[0,1,2,3]}],\"nodes\"", "[1,2,3]}],\"nodes\"")], "NODE_NO_SCENE"),
@@ -254,6 +265,33 @@ const CASES: &[Case] = &[
             ),
         ],
         "ALPHA_CUTOFF",
+    ),
+    // The triangles are wound against their normals, so that the front is hidden.
+    (
+        "gltf",
+        GLTF,
+        &[
+            ("\"TEXCOORD_0\":1", "\"TEXCOORD_0\":1,\"NORMAL\":2"),
+            (
+                "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAEAAgAAAAIAAwA=",
+                "gD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAIAAQAAAAMAAgA=",
+            ),
+        ],
+        "inside-out",
+    ),
+    // The sun shines upwards, from below a floor, and the background brightens the picture.
+    (
+        "gltf",
+        GLTF,
+        &[
+            (
+                "\"scale\":[2,2,1],\"translation\":[0,-1,-2]",
+                "\"rotation\":[-0.7071,0,0,0.7071],\"scale\":[20,20,1],\"translation\":[0,-0.01,20]",
+            ),
+            ("\"translation\":[-1,0,0]", "\"translation\":[-1,0,0],\"scale\":[0.4,0.4,0.4]"),
+            ("\"name\":\"Sun\",", "\"name\":\"Sun\",\"rotation\":[0.5,0,0,0.866],"),
+        ],
+        "light-behind",
     ),
     // The wall is a metal, which the sun does not light towards the camera.
     (
@@ -293,6 +331,13 @@ const CASES: &[Case] = &[
             ("def SphereLight \"Bulb\"", "def DistantLight \"Sun\""),
         ],
         "no-objects",
+    ),
+    // The radius of the ball is in another unit, so that it surrounds everything but the sun.
+    (
+        "usda",
+        USD,
+        &[("radius = 0.7", "radius = 70"), ("def SphereLight \"Bulb\"", "def DistantLight \"Sun\"")],
+        "camera-inside",
     ),
     // The camera is upside down above a floor that is a mesh.
     (
@@ -444,8 +489,12 @@ fn models_whose_only_light_misses_them_are_reported() {
     let Some(model) = common::corpus().map(|corpus| corpus.join(path)).filter(|model| model.exists()) else {
         return println!("skipped: no {path} in the corpus");
     };
-    let output = TestFolder::new().expect_exit(1, &format!("check {}", model.display())).out;
+    let folder = TestFolder::new();
+    let output = folder.expect_exit(1, &format!("check {} --studio none", model.display())).out;
     assert!(output.contains("mostly-black") && output.contains("the scene's only light does not reach it"), "{output}");
+    // With the surroundings that a model gets by default, all of it is visible.
+    let output = folder.run(&format!("check {}", model.display())).out;
+    assert!(!output.contains("mostly-black"), "{output}");
 }
 
 /// Findings about models name the words of the file and their places.
@@ -471,6 +520,8 @@ fn places_and_words_are_those_of_the_file() {
     let dim = said("f.xml", MITSUBA, "7,7,6", "0.007,0.007,0.006");
     assert!(dim.contains("f.xml:10:") && dim.contains("emits only 0.007 0.007 0.006"), "{dim}");
     assert!(!dim.contains("one-color"), "{dim}");
+    let black = said("m.xml", MITSUBA, "7,7,6", "0,0,0");
+    assert!(black.contains("black-light") && !black.contains("moved twice"), "{black}");
     let below = said(
         "g.xml",
         MITSUBA,

@@ -75,6 +75,7 @@ fn missing_file_suggests_a_name_from_inside_only() {
     };
     assert_eq!(similar("neat.obj").as_deref(), Some("near.obj"));
     assert_eq!(similar("models/Cubes.OBJ").as_deref(), Some("cube.obj"));
+    assert_eq!(similar("near.png"), None);
     // A wrong name of a folder is compared with the folders beside it.
     assert_eq!(similar("modles/cube.obj").as_deref(), Some("models"));
     assert_eq!(similar("nearobj/cube.obj"), None);

@@ -18,6 +18,17 @@ pub(super) struct RadPrimitive {
     pub numbers: Vec<f64>,
 }
 
+/// Returns the next word of the primitive that starts at `start`, and reports an error if there is
+/// none.
+fn next_word(start: Span, words: &mut Words, report: &SharedReport) -> Option<Word> {
+    let word = words.next();
+    if word.is_none() {
+        let error = Diagnostic::error("the file ends within this primitive").code("incomplete");
+        report.push(error.at(start.join(words.end())));
+    }
+    word
+}
+
 impl RadPrimitive {
     /// Reads the rest of a primitive after its first word. Returns `None` after an error, because
     /// it is then unknown where the next primitive starts.
@@ -30,14 +41,7 @@ impl RadPrimitive {
             report.push(error.code("bad-value").at(start).help(help));
             return None;
         }
-        let mut next = || {
-            let word = words.next();
-            if word.is_none() {
-                let error = Diagnostic::error("the file ends within this primitive").code("incomplete");
-                report.push(error.at(start.join(words.end())));
-            }
-            word
-        };
+        let mut next = || next_word(start, words, report);
         let (kind, name) = (next()?, next()?);
         if kind.text == "alias" {
             return Some(RadPrimitive { modifier, kind, name, texts: vec![next()?], numbers: Vec::new() });
@@ -48,10 +52,18 @@ impl RadPrimitive {
             report.error(wholes.at, "the number of integer arguments of a primitive must be 0");
             return None;
         }
-        let count = next()?.count(report)?;
+        let declared = next()?;
+        let count = declared.count(report)?;
         let mut numbers = Vec::new();
-        for _ in 0..count {
-            numbers.push(next()?.number(report)?);
+        while numbers.len() < count {
+            let word = next_word(start, words, report)?;
+            if !numbers.is_empty() && words.starts_line(&word) && !word.is_number() {
+                let message = format!("{} declares {count} numbers, but {} follow", declared.quoted(), numbers.len());
+                let error = Diagnostic::error(message).code("bad-value").at(declared.at);
+                report.push(error.related(word.at, "this word is not a number"));
+                return None;
+            }
+            numbers.push(word.number(report)?);
         }
         Some(RadPrimitive { modifier, kind, name, texts, numbers })
     }

@@ -181,6 +181,7 @@ fn errors_have_positions() {
             "1:6 error a plastic needs 5 numbers, but this one has 4",
         ),
         ("void plastic m 0 0 5 1 x 1 0 0", "1:24 error expected a number, found `x`"),
+        ("void plastic m 0 0 5 1 1\nm sphere s 0 0 4 0 0 0 1", "1:20 error `5` declares 5 numbers, but 2 follow"),
         ("void plastic m 0 0 5 1 1e99 1 0 0", "1:24 error expected a number, found `1e99`"),
         ("void plastic m 0 0 5 1 1", "1:1 error the file ends within this primitive"),
         ("void plastic m 0 0 99999999999 1", "1:1 error the file ends within this primitive"),

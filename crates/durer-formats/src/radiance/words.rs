@@ -18,9 +18,18 @@ impl Word {
         quoted(self.text.as_bytes())
     }
 
+    fn parsed(&self) -> Option<f64> {
+        parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok())
+    }
+
+    /// Returns true if the word is a number.
+    pub fn is_number(&self) -> bool {
+        self.parsed().is_some()
+    }
+
     /// Parses the word as a number, and reports an error if it is not a number.
     pub fn number(&self, report: &SharedReport) -> Option<f64> {
-        let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
+        let number = self.parsed();
         if number.is_none() {
             report.error(self.at, format!("expected a number, found {}", self.quoted()));
         }
@@ -66,6 +75,12 @@ impl<'a> Words<'a> {
     /// Returns the span of a range of bytes.
     pub fn span(&self, start: usize, end: usize) -> Span {
         Span { file: self.file, start: start as u32, end: end as u32 }
+    }
+
+    /// Returns true if a word of the text is the first on its line.
+    pub fn starts_line(&self, word: &Word) -> bool {
+        let before = &self.bytes[..word.at.start as usize];
+        before.iter().rev().find(|byte| !is_space(**byte) || **byte == b'\n').is_none_or(|byte| *byte == b'\n')
     }
 
     /// Returns the span of the position at the end of the text.

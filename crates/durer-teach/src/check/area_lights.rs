@@ -78,7 +78,10 @@ pub(super) fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
     match scene_probe.world().materials().get(scene_probe.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
-                || phong.principled.as_ref().is_some_and(|own| own.interface || own.definition.opacity < 1.0)
+                || phong
+                    .principled
+                    .as_ref()
+                    .is_some_and(|own| own.interface || own.definition.opacity < 1.0 || own.maps.opacity.is_some())
         }
         _ => false,
     }
@@ -204,12 +207,23 @@ pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
         // A light that illuminates the ceiling may be intentional.
         let indirect =
             distance_along_normal(scene_probe, object).is_some_and(|far| far > 0.03) && !scene_probe.is_dark();
-        if !flat || contribution.back <= 0.0 || contribution.front > MIN_CONTRIBUTION * contribution.back || indirect {
+        // A body also emits away from everything that is inside it.
+        let is_around = contribution.front_free == 0.0;
+        if !(flat || is_around)
+            || contribution.back <= 0.0
+            || contribution.front > MIN_CONTRIBUTION * contribution.back
+            || indirect
+        {
             return None;
         }
         let flip = shape(object).and_then(Shape::flip);
         let help = match flip {
             _ if scene_probe.model_format().is_some() => model_help(scene_probe, number),
+            None if plane(object).is_none() && shape(object).is_some() => {
+                "a surface emits light on the side of its normal, here outwards: set `walls thin` in the material so \
+                 that both sides emit light"
+                    .into()
+            }
             _ => {
                 let turn = match flip {
                     Some(Flip::Corners(_)) => "swap two vertices of the triangle".into(),
@@ -307,13 +321,28 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
             "none of this light reaches the visible surfaces directly"
         })
         .help("move the light out of the occluder, or to the side of the visible surfaces");
-        // If the picture is not dark, the light arrives indirectly.
-        let dark = scene_probe.is_dark();
-        let severity = if dark { Severity::Warning } else { Severity::Note };
-        (dark || lights.len() > 1)
+        // If the picture is not dark, the light arrives indirectly, or the light of the sky does.
+        let is_lost = scene_probe.is_dark() || whole && !is_reached(scene_probe, number, both);
+        let severity = if is_lost { Severity::Warning } else { Severity::Note };
+        (is_lost || lights.len() > 1)
             .then(|| Finding::from(Diagnostic { severity, ..diagnostic }).affecting_whole_picture(whole))
     };
     lights.iter().filter_map(say).collect()
+}
+
+/// Returns true if an area light reaches the visible points, directly or after reflections.
+fn is_reached(scene_probe: &SceneProbe, light: u32, both: bool) -> bool {
+    let object = &scene_probe.world().objects()[light as usize];
+    // A light that cannot be sampled counts as reached.
+    let Some(parts) = sampled_parts(object) else { return true };
+    ON_LIGHT.into_iter().zip(parts.iter().cycle()).any(|(u, part)| {
+        let Some((form, normal)) = emitter_of(object, *part) else { return true };
+        super::scene_probe::Reach::of(scene_probe).is_reached(scene_probe, |point| {
+            let (place, n, _) = form.point(normal, u)?;
+            let to_light = place.as_vec3() - point;
+            (both || n.dot(to_light) < 0.0).then(|| (to_light.normalize_or_zero(), to_light.length()))
+        })
+    })
 }
 
 /// Reports a one-sided area light that faces away from everything visible, but is also occluded, so

@@ -8,7 +8,7 @@ use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot, spread_direction};
 use durer_diag::Diagnostic;
 use durer_scene::light::{Illuminate as _, Light, PhotometricLight};
-use durer_scene::math::{Vec3, fp};
+use durer_scene::math::{Ray, Vec3, fp};
 use durer_scene::scene::Spanned;
 
 /// Reports lights whose beam misses everything visible.
@@ -30,7 +30,11 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
         // The beam must reach the objects after that.
         let (_, edge) = fp::sin_cos_degrees(f64::from(light.value.cone().unwrap_or(90.0).clamp(5.0, 45.0)));
         let negated = f64::from(turned.dot(to)) > edge;
-        let is_target = (direction - middle).length() < 0.3 * (middle - point).length() && direction != middle - point;
+        // An axis is a direction rather than a point if its negation is right.
+        let is_axis = direction.abs().max_element() == 1.0 && direction.length() == 1.0;
+        let is_target = (direction - middle).length() < 0.3 * (middle - point).length()
+            && direction != middle - point
+            && !(negated && is_axis);
         let text = vector(if negated && !is_target { -direction } else { middle - point });
         let model = scene_probe.model_format().is_some();
         let help = match negated {
@@ -69,8 +73,18 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
 /// floor above the light.
 fn wall_before(scene_probe: &SceneProbe, from: Vec3, to: Vec3) -> Option<u32> {
     let world = scene_probe.world();
-    let ray = durer_scene::math::Ray { t_max: 0.9, ..durer_scene::math::Ray::new(from, to - from) };
+    let ray = Ray { t_max: 0.9, ..Ray::new(from, to - from) };
     let hit = world.closest(&ray, &mut ())?;
+    let others: Vec<Vec3> = (scene_probe.hits().filter(|(_, other)| other.object != hit.object))
+        .map(|(probe, other)| probe.ray.at(other.t))
+        .collect();
+    let is_behind = |point: &&Vec3| {
+        let ray = Ray { t_max: 0.999, ..Ray::new(from, **point - from) };
+        world.hit_of(hit.object, &ray.into()).is_some()
+    };
+    if others.iter().filter(is_behind).count() * 2 <= others.len() {
+        return None;
+    }
     let size = |bounds: durer_scene::math::Aabb| bounds.size().max_element();
     let is_large =
         world.objects()[hit.object as usize].bounds().is_none_or(|own| size(own) > 0.5 * size(world.bounds()));
@@ -187,7 +201,7 @@ fn too_close(scene_probe: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let world = scene_probe.world();
     let steps = (0..26).map(|i| spread_direction(i, 26));
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
-    let rays = axes.into_iter().chain(steps).map(|dir| durer_scene::math::Ray::new(point.position, dir));
+    let rays = axes.into_iter().chain(steps).map(|dir| Ray::new(point.position, dir));
     let hits = rays.filter_map(|ray| world.closest(&ray, &mut ()));
     hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -27,7 +27,7 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     // A plane can extend beyond the clip distances, so only bounded objects count.
     let mut seen = world.objects().iter().zip(scene_probe.visibilities());
     if seen.any(|(object, visibility)| object.bounds().is_some() && *visibility == Visibility::Visible) {
-        return Vec::new();
+        return far.and_then(|far| partly_clipped(scene_probe, far)).into_iter().collect();
     }
     let orthographic = matches!(world.camera(), Camera::Orthographic(_));
     let forward = world.camera_frame().forward;
@@ -51,13 +51,7 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
     let depths = || free.iter().filter(|(_, bounded)| *bounded || !any_bounded).map(|(depth, _)| *depth);
     let (least, most) = (depths().fold(f32::INFINITY, f32::min), depths().fold(f32::NEG_INFINITY, f32::max));
     let low = if least > 0.0 { 0.9 * least } else { least - 0.1 * (most - least).max(least.abs()) };
-    let words = |field: &'static str| match (scene_probe.model_format().map(|format| format.name), field) {
-        (Some("Mitsuba"), "near") => "near_clip",
-        (Some("Mitsuba"), _) => "far_clip",
-        (Some("glTF"), "near") => "znear",
-        (Some("glTF"), _) => "zfar",
-        _ => field,
-    };
+    let words = |field: &'static str| words(scene_probe, field);
     let span = scene_probe.input.scene.camera_span;
     let place = |field: &str| scene_probe.field_span(span, &[field]);
     let (message, help, field, edits) = match (near, far) {
@@ -98,10 +92,56 @@ pub(super) fn clipped(scene_probe: &SceneProbe) -> Vec<Finding> {
         .help(help);
     let diagnostic =
         edits.into_iter().fold(diagnostic, |diagnostic, (field, text)| diagnostic.fix_at(place(field), text));
-    let written = scene_probe.model_format().and_then(|_| super::written::place_of_word(scene_probe, words(field)));
-    let diagnostic = match written {
+    vec![Finding::from(at_distance(scene_probe, diagnostic, field)).affecting_whole_picture(true)]
+}
+
+/// Returns the word for a clip distance in the format of the scene.
+fn words(scene_probe: &SceneProbe, field: &'static str) -> &'static str {
+    match (scene_probe.model_format().map(|format| format.name), field) {
+        (Some("Mitsuba"), "near") => "near_clip",
+        (Some("Mitsuba"), _) => "far_clip",
+        (Some("glTF"), "near") => "znear",
+        (Some("glTF"), _) => "zfar",
+        _ => field,
+    }
+}
+
+/// Places a finding at a clip distance.
+fn at_distance(scene_probe: &SceneProbe, diagnostic: Diagnostic, field: &'static str) -> Diagnostic {
+    let word = words(scene_probe, field);
+    match scene_probe.model_format().and_then(|_| super::written::place_of_word(scene_probe, word)) {
         Some(place) => diagnostic.at(place),
-        None => scene_probe.at_value(diagnostic, span, &[field, "far"]),
+        None => scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &[field, "far"]),
+    }
+}
+
+/// Reports a far distance that cuts away whole objects, while others are visible.
+fn partly_clipped(scene_probe: &SceneProbe, far: f32) -> Option<Finding> {
+    let world = scene_probe.world();
+    let forward = world.camera_frame().forward;
+    let mut cut: Vec<(u32, f32)> = Vec::new();
+    for probe in &scene_probe.probes {
+        let Some(hit) = world.closest(&Ray { t_max: f32::INFINITY, ..probe.ray }, &mut ()) else { continue };
+        let is_bounded = world.objects()[hit.object as usize].bounds().is_some();
+        if is_bounded && scene_probe.visibilities()[hit.object as usize] != Visibility::Visible {
+            cut.push((hit.object, hit.t * probe.ray.dir.dot(forward)));
+        }
+    }
+    let &(first, _) = cut.first()?;
+    let most = cut.iter().map(|(_, depth)| *depth).fold(0.0, f32::max);
+    let mut objects: Vec<u32> = cut.into_iter().map(|(object, _)| object).collect();
+    objects.sort_unstable();
+    objects.dedup();
+    let (name, word) = (scene_probe.object(first), words(scene_probe, "far"));
+    let message = match objects.len() {
+        1 => format!("the `far` distance {} cuts away the {name}", number(far)),
+        n => format!("the `far` distance {} cuts away {n} objects, such as the {name}", number(far)),
     };
-    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
+    let diagnostic = Diagnostic::warning(message)
+        .related(scene_probe.object_span(first), "this object is farther away")
+        .effect("objects beyond the clip distances are invisible")
+        .help(format!("write `{word} {}`, or remove `{word}`", number(1.1 * most)));
+    let value = scene_probe.field_span(scene_probe.input.scene.camera_span, &["far"]);
+    let diagnostic = diagnostic.fix_at(value, number(1.1 * most));
+    Some(Finding::from(at_distance(scene_probe, diagnostic, "far")))
 }

@@ -159,7 +159,7 @@ fn all_colors(scene_probe: &SceneProbe) -> Vec<ColorField> {
 /// Reports colours whose channels range from 0 to 255.
 pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut say = |color: Color, place: Option<Span>, block: Option<Span>, is_light: bool| {
+    let describe = |color: Color, place: Option<Span>, block: Option<Span>, is_light: bool| {
         // Whole numbers are probably byte values if some of them are large.
         let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
@@ -199,14 +199,23 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
             Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
         };
-        findings.push(Finding::from(diagnostic).affecting_whole_picture(far));
+        Finding::from(diagnostic).affecting_whole_picture(far)
     };
     let beyond = all_colors(scene_probe).into_iter().filter(|field| field.color.max_element() > field.most);
     for ColorField { color, block, fields, .. } in beyond.take(MAX_FINDINGS) {
+        if let Some(finding) = without_fading(scene_probe, color, block) {
+            findings.push(finding);
+            continue;
+        }
         let written =
             scene_probe.model_format().and_then(|_| super::written::place_of_color(scene_probe, block, color));
         let is_light = fields == ["color", "color"];
-        say(color, written.or_else(|| scene_probe.field_span(block, &fields)), Some(block), is_light);
+        findings.push(describe(
+            color,
+            written.or_else(|| scene_probe.field_span(block, &fields)),
+            Some(block),
+            is_light,
+        ));
     }
     let background = &scene_probe.input.scene.background;
     for (color, fields) in
@@ -215,10 +224,42 @@ pub(super) fn too_large(scene_probe: &SceneProbe) -> Vec<Finding> {
         // With an exposure, colours need not be in the range of the display.
         if color.max_element() * scene_probe.input.exposure > 2.0 && !scene_probe.is_physical() {
             let block = background_span(scene_probe);
-            say(color, block.and_then(|block| scene_probe.field_span(block, &fields)), block, true);
+            let place = block.and_then(|block| scene_probe.field_span(block, &fields));
+            findings.push(describe(color, place, block, true));
         }
     }
     findings
+}
+
+/// Strength of light above which it is too strong, also if it fades.
+const MAX_FADED: f32 = 3.0;
+
+/// Reports a strong point light whose attenuation is constant, if the light would have the right
+/// strength with the same coefficient for the square of the distance.
+fn without_fading(scene_probe: &SceneProbe, color: Color, block: Span) -> Option<Finding> {
+    let lights = scene_probe.input.scene.lights.iter().flatten();
+    let (number, light) = lights.enumerate().find(|(_, light)| light.span == block)?;
+    let constant = super::verdict::attenuation(&light.value).filter(|a| a.x > 0.0 && a.y == 0.0 && a.z == 0.0)?;
+    let value = scene_probe.field_span(block, &["attenuation"])?;
+    let place = light.value.position()?;
+    let lit = scene_probe.hits().filter(|(_, hit)| hit.contribution(number).is_some_and(|lit| lit.cosine > 0.0));
+    let least = lit.map(|(probe, hit)| (probe.ray.at(hit.t) - place).length_squared()).fold(f32::INFINITY, f32::min);
+    let most = color.max_element() / (constant.x * least);
+    if !(super::verdict::VISIBLE..=MAX_FADED).contains(&most) {
+        return None;
+    }
+    let written = scene_probe.text(value);
+    let square = vector(Color::new(0.0, 0.0, constant.x));
+    let message =
+        format!("the light of colour {} does not fade: its attenuation `{written}` is constant", vector(color));
+    let diagnostic = Diagnostic::warning(message)
+        .at(value)
+        .effect("most of what it lights is white or a saturated colour")
+        .help(format!(
+            "the coefficients are those of 1, of the distance and of its square: write `attenuation {square}` to divide \
+             by the square of the distance, or use a colour from 0 to 1"
+        ));
+    Some(Finding::from(diagnostic).affecting_whole_picture(true))
 }
 
 /// Returns a warning about the most visible material whose diffuse, reflective and transparent

@@ -99,6 +99,12 @@ fn sun_help(background: &Background) -> Option<String> {
     let zone = (longitude / 15.0).round();
     let local = Background { time_zone: Some(zone), ..background.clone() };
     local.sun().filter(|way| way.y > 0.0)?;
+    // West is negative.
+    let mirror = Background { longitude: Some(-longitude), ..background.clone() };
+    let mirrored = match mirror.sun().filter(|way| way.y > 0.0) {
+        Some(_) => format!(", or `longitude {}` if the place is on the other side of Greenwich", -longitude),
+        None => String::new(),
+    };
     match background.time_zone {
         None => Some(format!(
             "the `time` is taken as UTC because there is no `timeZone`: if it is local time, write `timeZone {zone}`, \
@@ -107,7 +113,7 @@ fn sun_help(background: &Background) -> Option<String> {
         Some(written) => (written - zone)
             .abs()
             .gt(&MAX_ZONE_DIFFERENCE)
-            .then(|| format!("`timeZone {written}` does not fit the longitude: try `timeZone {zone}`")),
+            .then(|| format!("`timeZone {written}` does not fit the longitude: try `timeZone {zone}`{mirrored}")),
     }
 }
 

@@ -78,10 +78,10 @@ fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
     let light = super::area_lights::brightest(scene_probe).filter(|_| !sky);
     let help = match sky {
         true => format!("this sky has outdoor brightness, in cd/m^2: set `--exposure {exposure}`"),
-        false if super::area_lights::emissive_objects(scene_probe).is_empty() => format!(
-            "light is in cd/m^2: set `--exposure {exposure}`, or multiply the lights and the background by {factor}"
-        ),
-        false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
+        false if super::area_lights::emissive_objects(scene_probe).is_empty() => {
+            format!("set `--exposure {exposure}`, or multiply the lights and the background by {factor}")
+        }
+        false => format!("set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
     let emitter = super::emission::strongest(scene_probe).filter(|_| light.is_none() && !sky);
@@ -141,14 +141,15 @@ fn bright_light(scene_probe: &SceneProbe, diagnostic: &Diagnostic, middle: f32, 
         }
     };
     let what = match strength {
-        Some(("lux", value)) if value >= 1e4 => format!("`lux {}` is sunlight, in cd/m^2", number(value)),
-        _ => "this light is in cd/m^2".to_string(),
+        Some(("lux", value)) if value >= 1e4 => format!("`lux {}` is sunlight: ", number(value)),
+        Some((field, value)) => format!("with `{field} {}`, radiance is in cd/m^2: ", number(value)),
+        None => String::new(),
     };
     let place = unit.map(|(_, place)| place).or_else(|| scene_probe.field_span(span, &["color"]));
     let diagnostic = diagnostic.clone().at(place.unwrap_or(span));
     Some(diagnostic.help(match scene_probe.model_format() {
         Some(_) => format!("set `--exposure {exposure}`, or multiply the strength of this light by {}", number(factor)),
-        None => format!("{what}: set `--exposure {exposure}`, or {less}"),
+        None => format!("{what}set `--exposure {exposure}`, or {less}"),
     }))
 }
 

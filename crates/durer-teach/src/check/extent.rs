@@ -22,8 +22,14 @@ const MIN_SHARE_ALONE: f32 = 0.065;
 /// one for objects that spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
-/// Size ratio above which an object that contains the camera is out of scale.
+/// Size ratio above which an object that contains the camera is out of scale, and ratio for a ball
+/// in whose inside hardly anything is lit.
 const MAX_ENCLOSING_RATIO: f32 = 20.0;
+const MAX_DARK_RATIO: f32 = 8.0;
+/// Size in pixels below which an object next to a far larger one is only a speck.
+const SPECK: f32 = 2.5;
+/// Maximum number of objects in a scene in which one of them is blamed for its size.
+const FEW_OBJECTS: usize = 8;
 
 /// Field of view, in degrees, below which a part of one object is probably not meant to fill the
 /// picture.
@@ -242,13 +248,15 @@ fn filled_by_one_object(scene_probe: &SceneProbe, sizes: &[f32]) -> Option<Findi
     Some(at_angle(scene_probe, diagnostic))
 }
 
-/// Returns the ratio of an object's size to that of the largest other object if it exceeds
-/// `MAX_ENCLOSING_RATIO`.
+/// Returns the ratio of an object's size to that of the largest other object if it is so large that
+/// an object around the camera is out of scale.
 pub(super) fn times_larger(scene_probe: &SceneProbe, object: u32) -> Option<f32> {
     let size = |i: usize| Some(scene_probe.world().objects()[i].bounds()?.size().max_element());
     let others = (0..scene_probe.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
     let times = size(object as usize)? / others.fold(0.0, f32::max);
-    (times > MAX_ENCLOSING_RATIO && times.is_finite()).then_some(times)
+    let is_dark_ball = || is_ball(&scene_probe.world().objects()[object as usize]) && scene_probe.is_dark();
+    let is_large = times > MAX_ENCLOSING_RATIO || times > MAX_DARK_RATIO && is_dark_ball();
+    (is_large && times.is_finite()).then_some(times)
 }
 
 /// Returns true if a large object spoils the picture. Either it is not visible despite its size, or
@@ -287,7 +295,7 @@ pub(super) fn encloses_camera_wrongly(scene_probe: &SceneProbe, object: u32) -> 
 
 /// Returns true if an object around the camera is a ball that represents the ground. It is far
 /// larger than everything else, and the camera is near its top and far from its centre.
-fn is_ground(scene_probe: &SceneProbe, object: u32) -> bool {
+pub(super) fn is_ground(scene_probe: &SceneProbe, object: u32) -> bool {
     let own = &scene_probe.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
     let pose = scene_probe.world().camera().pose();
@@ -330,6 +338,25 @@ fn is_sky_before_lights(scene_probe: &SceneProbe, object: u32) -> bool {
         && (eye - bounds.center()).length() < 0.25 * bounds.size().max_element()
 }
 
+/// Returns the largest object and the size of the next one if it is so much larger that a picture
+/// that shows it leaves the others as specks, or inside it.
+fn dwarfing(scene_probe: &SceneProbe, sizes: &[(u32, f32)]) -> Option<(u32, f32)> {
+    let [rest @ .., (_, next), (giant, size)] = sizes else { return None };
+    let visibilities = scene_probe.visibilities();
+    let speck = |object: u32| {
+        let bounds = scene_probe.world().objects()[object as usize].bounds()?;
+        pixels(scene_probe, bounds).filter(|pixels| *pixels < SPECK)
+    };
+    let others = || sizes.iter().map(|(object, _)| *object).filter(|object| object != giant);
+    let is_hidden = |object: u32| visibilities[object as usize] == Visibility::Hidden(*giant);
+    let dwarfs = others().all(|object| speck(object).is_some() || is_hidden(object))
+        && others().any(|object| speck(object).is_some());
+    // A camera in the file shows which of the sizes is meant.
+    let is_few = rest.len() + 2 <= FEW_OBJECTS && !scene_probe.input.scene.camera_span.has_position();
+    let is_shown = visibilities[*giant as usize] == Visibility::Visible;
+    (*size > MAX_ENCLOSING_RATIO * next && is_few && is_shown && dwarfs).then_some((*giant, *next))
+}
+
 /// Reports objects that are far larger or smaller than most others.
 pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
@@ -368,6 +395,8 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         }
         _ => sizes[sizes.len() / 2].1,
     };
+    let dwarfing = dwarfing(scene_probe, &sizes);
+    let middle = dwarfing.map_or(middle, |(_, next)| next);
     let mut findings = Vec::new();
     let around = super::containment::containing_objects(world, eye);
     let holds_eye = |object: u32| around.contains(&object) && encloses_camera_wrongly(scene_probe, object);
@@ -375,10 +404,13 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Either of the two objects may be wrong. The small one may be invisible, or the large one
         // may hide others.
-        let spoils = size > middle && spoils_picture(scene_probe, object);
+        let dwarfs = dwarfing.is_some_and(|(giant, _)| giant == object);
+        let spoils = dwarfs || size > middle && spoils_picture(scene_probe, object);
         if findings.len() >= MAX_FINDINGS
             || ratio
-                < if !spoils {
+                < if dwarfs {
+                    MAX_ENCLOSING_RATIO
+                } else if !spoils {
                     OUT_OF_SCALE
                 } else if encloses_camera(scene_probe, object) {
                     MAX_ENCLOSING_RATIO
@@ -409,6 +441,7 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         ))
         .at(scene_probe.object_span(object))
         .effect(match scene_probe.visibilities()[object as usize] {
+            Visibility::Visible if dwarfs => "the other objects are hidden by it, or only specks next to it",
             Visibility::Visible if size > middle => "the object hides or contains the others",
             Visibility::Visible => "the object covers hardly a pixel",
             _ if size > middle => "the object spans the entire scene, but its surface is outside the picture",
@@ -416,11 +449,15 @@ pub(super) fn out_of_scale(scene_probe: &SceneProbe) -> Vec<Finding> {
         })
         .help(format!(
             "the object's largest side is {}, but that of {} is {}: check the size and its unit (such as \
-             millimetres), and the `{}` that encloses the object",
+             millimetres), and the {} that {} the object",
             number(size),
             if sizes.len() == 2 { "the other" } else { "most objects" },
             number(middle),
-            scene_probe.keyword_of_grammar("Scale", "scale")
+            match scene_probe.model_format() {
+                Some(_) => "transforms".to_string(),
+                None => format!("`{}`", scene_probe.keyword_of_grammar("Scale", "scale")),
+            },
+            if scene_probe.model_format().is_some() { "enclose" } else { "encloses" }
         ));
         let shown = scene_probe.hits().filter(|(_, hit)| hit.object == object).count();
         findings.push(Finding::from(diagnostic).affecting_whole_picture(shown * 2 > scene_probe.probes.len()));
@@ -439,7 +476,8 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
         angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
     };
     let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else {
-        return sun_in_radians(scene_probe).into_iter().collect();
+        let found = sun_in_radians(scene_probe).or_else(|| pbrt_in_radians(scene_probe, fraction));
+        return found.into_iter().collect();
     };
     let degrees = number(angle.to_degrees().round());
     let diagnostic = Diagnostic::warning(format!("the rotation by {angle} degrees may be in radians"))
@@ -450,6 +488,23 @@ pub(super) fn radians(scene_probe: &SceneProbe) -> Vec<Finding> {
         Some(value) => diagnostic.at(value).fix(value, degrees),
         None => diagnostic.at(span),
     })]
+}
+
+/// Returns a warning about a rotation in the text of a pbrt file whose angle is probably in
+/// radians.
+fn pbrt_in_radians(scene_probe: &SceneProbe, fraction: impl Fn(f32) -> bool) -> Option<Finding> {
+    scene_probe.model_format().filter(|format| format.name == "pbrt")?;
+    let angle = |line: &[u8]| {
+        let word = str::from_utf8(line).ok()?.trim().strip_prefix("Rotate ")?.split_ascii_whitespace().next();
+        word?.parse().ok().filter(|angle| fraction(*angle))
+    };
+    let all = super::lines::lines(scene_probe.input.files.bytes(0)?, 0);
+    let (span, angle) = all.into_iter().find_map(|(span, line)| Some((span, angle(line)?)))?;
+    let diagnostic = Diagnostic::warning(format!("the rotation by {angle} degrees may be in radians"))
+        .at(span)
+        .effect("the object is hardly rotated")
+        .help(format!("angles are in degrees: try {}", number(angle.to_degrees().round())));
+    Some(Finding::from(diagnostic))
 }
 
 /// Returns a note about a sun just above the horizon whose altitude may be in radians.

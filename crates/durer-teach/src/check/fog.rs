@@ -1,10 +1,13 @@
 //! Checks for fog that is too dense or outside the picture.
 
-use super::finding::{Finding, number, percent};
+use super::finding::{Finding, number, percent, vector};
+use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Span};
+use durer_scene::camera::Projection as _;
 use durer_scene::light::Illuminate as _;
-use durer_scene::math::{Color, fp};
+use durer_scene::math::{Aabb, Color, fp};
+use durer_scene::medium::Medium;
 
 /// Fog that transmits less than this fraction of the light counts as opaque.
 const OPAQUE: f32 = 0.01;
@@ -14,63 +17,100 @@ pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let (Some(fog), Some(written)) = (world.fog(), &scene_probe.input.scene.fog) else { return Vec::new() };
     let Some(place) = fog.region.as_ref().filter(|_| scene_probe.is_physical()) else { return Vec::new() };
-    let goes_through = |probe: &super::probes::Probe| {
-        let end = probe.hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
+    let goes_through = |probe: &Probe| {
+        let end = probe.hit.as_ref().map_or(f32::INFINITY, |hit| (1.0 - 1e-4) * hit.t);
         place.bounds.clip(probe.ray.origin, probe.ray.dir).is_some_and(|(from, to)| to > 0.0 && from < end)
     };
     // Fog outside the picture can still dim visible objects.
     let around = world.bounds();
+    let plane = plane_before(scene_probe, place.bounds);
     let apart = around.is_empty()
+        || plane.is_some()
         || (0..3).any(|axis| place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]);
     if !apart || scene_probe.probes.iter().any(goes_through) {
         return Vec::new();
     }
-    let (min, max) = (super::finding::vector(around.min), super::finding::vector(around.max));
+    let (min, max) = (vector(around.min), vector(around.max));
     let diagnostic = Diagnostic::warning("this fog is outside the picture: no camera ray passes through its box")
         .effect("the fog is invisible")
         .help(match around.is_empty() {
             true => "move its `min` and `max` to where the camera looks".to_string(),
             false => format!("move the box to the objects, whose bounds are `min {min} max {max}`"),
         });
+    let diagnostic = match plane {
+        Some(plane) => diagnostic.related(scene_probe.object_span(plane), "the box is behind this plane"),
+        None => diagnostic,
+    };
     vec![Finding::from(scene_probe.at_value(diagnostic, written.span, &["min", "max"]))]
+}
+
+/// Returns the opaque plane behind which a box is, as seen by the camera.
+fn plane_before(scene_probe: &SceneProbe, place: Aabb) -> Option<u32> {
+    let eye = scene_probe.world().camera().pose().center;
+    let is_before = |plane: &u32| {
+        let Some((n, d)) = super::hidden::world_plane(scene_probe, *plane) else { return false };
+        let side = (eye.dot(n) - d).signum();
+        let near = 1e-5 * place.size().length();
+        !scene_probe.is_glass(*plane) && place.corners().iter().all(|corner| (corner.dot(n) - d) * side <= near)
+    };
+    (0..scene_probe.world().objects().len() as u32).find(is_before)
 }
 
 /// Fraction of the light that is left at the visible surfaces, and brightness of the picture, below
 /// which fog that only absorbs light is reported.
 const MAX_LEFT: f32 = 0.3;
 const DIM: f32 = 0.15;
+/// Largest fraction of light that fog scatters if it hardly does more than absorb light.
+const BLACK: f32 = 0.03;
+
+/// Returns the distances in the fog between the camera and the visible surfaces, in ascending
+/// order.
+fn ways(scene_probe: &SceneProbe, fog: &Medium) -> Vec<f32> {
+    let way = |(probe, hit): (&Probe, &ProbeHit)| {
+        let (from, to) = match &fog.region {
+            Some(place) => place.bounds.clip(probe.ray.origin, probe.ray.dir)?,
+            None => (0.0, f32::INFINITY),
+        };
+        Some((to.min(hit.t) - from.max(0.0)).max(0.0) * probe.ray.dir.length())
+    };
+    let mut ways: Vec<f32> = scene_probe.hits().filter_map(way).filter(|way| way.is_finite()).collect();
+    ways.sort_by(f32::total_cmp);
+    ways
+}
 
 /// Reports fog that scatters no light, but only absorbs it, and leaves the picture dark.
 pub(super) fn black_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     let (Some(fog), Some(written)) = (scene_probe.world().fog(), &scene_probe.input.scene.fog) else {
         return Vec::new();
     };
-    let even = fog.region.is_none();
-    if !scene_probe.is_physical() || written.value.color != Color::ZERO {
+    let color = written.value.color;
+    let beams = |scene_probe: &SceneProbe| match color == Color::ZERO {
+        true => dark_beams(scene_probe, written.span).into_iter().collect(),
+        false => Vec::new(),
+    };
+    if !scene_probe.is_physical() || color.max_element() > BLACK {
         return Vec::new();
     }
-    if !even {
-        return dark_beams(scene_probe, written.span).into_iter().collect();
+    if fog.region.as_ref().is_some_and(|place| place.density.is_some()) {
+        return beams(scene_probe);
     }
-    let mut ways: Vec<f32> =
-        scene_probe.hits().map(|(probe, hit)| hit.t * probe.ray.dir.length()).filter(|way| way.is_finite()).collect();
-    ways.sort_by(f32::total_cmp);
+    let ways = ways(scene_probe, fog);
     let Some(middle) = ways.get(ways.len() / 2) else { return Vec::new() };
     let left = fp::exp(-fog.extinction.max_element() * middle);
-    let lit = |probe: &super::probes::Probe| {
-        probe.hit.as_ref().is_some_and(|hit| !scene_probe.world().may_emit(hit.material))
-    };
+    let lit = |probe: &Probe| probe.hit.as_ref().is_some_and(|hit| !scene_probe.world().may_emit(hit.material));
     let mut shown: Vec<f32> =
         (scene_probe.lit_probes().filter(|(probe, _)| lit(probe))).map(|(_, color)| color.max_element()).collect();
     shown.sort_by(f32::total_cmp);
     let is_dim = shown.get(shown.len() / 2).is_some_and(|brightness| *brightness < DIM);
     if left > MAX_LEFT || !is_dim {
-        return dark_beams(scene_probe, written.span).into_iter().collect();
+        return beams(scene_probe);
     }
-    let diagnostic = Diagnostic::warning("this fog scatters no light: its `color` is 0 0 0, so it only absorbs light")
+    let scatters = if color == Color::ZERO { "no light" } else { "hardly any light" };
+    let message = format!("this fog scatters {scatters}: its `color` is {}, so it only absorbs light", vector(color));
+    let diagnostic = Diagnostic::warning(message)
         .effect(format!(
-            "only {:.0} % of the light of a surface at the middle distance, {}, is left, and the picture is dark",
-            100.0 * left,
+            "only {} % of the light of a surface is left after the middle distance in the fog, {}, and the picture is dark",
+            number((1000.0 * left).round() / 10.0),
             number(*middle)
         ))
         .help("for white fog, write `color 1 1 1`, the fraction of light that the fog scatters");
@@ -93,7 +133,7 @@ fn dark_beams(scene_probe: &SceneProbe, span: Span) -> Option<Finding> {
 fn box_around(scene_probe: &SceneProbe) -> String {
     let bounds = scene_probe.world().bounds();
     let size = bounds.size().max_element().max(1.0);
-    let [min, max] = [bounds.min - size, bounds.max + size].map(|corner| super::finding::vector(corner.round()));
+    let [min, max] = [bounds.min - size, bounds.max + size].map(|corner| vector(corner.round()));
     format!("min {min} max {max}")
 }
 
@@ -101,9 +141,7 @@ fn box_around(scene_probe: &SceneProbe) -> String {
 /// besides the background.
 fn needs_infinity(scene_probe: &SceneProbe) -> (bool, bool) {
     let world = scene_probe.world();
-    let sky = world.environment().is_some()
-        || world.cube_map().is_some()
-        || world.background() != Color::ZERO && !world.is_dark();
+    let sky = super::physical::has_sky(scene_probe);
     let suns = world.lights().iter().any(|light| light.position().is_none());
     let near = world.lights().iter().any(|light| light.position().is_some())
         || world.objects().iter().any(|object| world.may_emit(object.material));
@@ -120,18 +158,7 @@ pub(super) fn thick_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
     let span = written.span;
     let extinction = fog.extinction.max_element();
     let mut findings = Vec::new();
-    let mut ways: Vec<f32> = scene_probe
-        .hits()
-        .filter_map(|(probe, hit)| {
-            let length = probe.ray.dir.length();
-            let (from, to) = match &fog.region {
-                Some(place) => place.bounds.clip(probe.ray.origin, probe.ray.dir)?,
-                None => (0.0, f32::INFINITY),
-            };
-            Some((to.min(hit.t) - from.max(0.0)).max(0.0) * length)
-        })
-        .collect();
-    ways.sort_by(f32::total_cmp);
+    let ways = ways(scene_probe, fog);
     let even = fog.region.as_ref().is_none_or(|place| place.density.is_none());
     let swallowed = ways.iter().filter(|way| fp::exp(-extinction * **way) < OPAQUE).count();
     if even && !ways.is_empty() && swallowed * 20 > scene_probe.hits().count() * 19 {

@@ -176,16 +176,22 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let Some((black, all)) = black_samples(scene_probe) else { return Vec::new() };
     let model = scene_probe.model_format().is_some();
+    let is_below = match scene_probe.world().lights() {
+        [Light::Directional(light)] => super::lights::is_upwards(scene_probe, light.direction),
+        _ => false,
+    };
     let diagnostic = Diagnostic::warning(format!(
         "{} of the visible surface area is black: {}",
         percent(black, all),
         match scene_probe.world().lights().len() {
+            1 if is_below => "the scene's only light shines upwards, from below",
             1 if model => "the scene's only light does not reach it, or is reflected past the camera",
             _ => "the scene's lights do not reach it",
         }
     ))
     .effect("hardly anything except the background is visible")
     .help(match model {
+        true if is_below => "turn the light over, so that it shines downwards",
         true => "use `--studio sun`, which lights a model from outside and replaces its lights, or `--environment`",
         false if background_span(scene_probe).is_some() => {
             "move the light to the camera's side, add another light, or give the `Background` a brighter `color`"

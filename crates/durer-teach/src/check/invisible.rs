@@ -3,13 +3,14 @@
 
 use super::finding::{Finding, MAX_FINDINGS, counted, number, vector};
 use super::scene_probe::SceneProbe;
-use super::shapes::{plane, triangle};
+use super::shapes::{is_ball, plane, shape, triangle};
 use super::visibility::{Visibility, past_hidden_backs, pixels, points, rays_to};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::ObjectKind;
+use durer_scene::shape::Shape as _;
 
 /// If a scene has more objects than this, some of them may be out of sight on purpose.
 const FEW_OBJECTS: usize = 8;
@@ -21,6 +22,7 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     // In a large scene, some objects are always hidden or outside the picture.
     let mut findings = far_away(scene_probe);
     findings.extend(turned_away(scene_probe));
+    findings.extend(around_everything(scene_probe));
     let missing =
         visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
     if visibilities.len() > FEW_OBJECTS && missing * 3 < visibilities.len() {
@@ -36,11 +38,18 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match visibilities[i as usize] {
             // Objects behind glass and objects seen in a mirror count as visible.
-            Visibility::Hidden(by) if !scene_probe.is_glass(by) && findings.is_empty() => Some((i, by)),
+            Visibility::Hidden(by) if !scene_probe.is_glass(by) && findings.is_empty() && !is_lamp(i) => Some((i, by)),
             _ => None,
         })
-        // If a triangle is behind another one, it is the far side of a body.
-        .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scene_probe, object)))
+        // If a triangle is behind another one, or a flat shape behind one of the same material, it
+        // is the far side of a body.
+        .filter(|&(i, by)| {
+            let material = |object: u32| scene_probe.world().objects()[object as usize].material;
+            let is_side = |object: u32| {
+                is_triangle(scene_probe, object) || material(i) == material(by) && is_flat(scene_probe, object)
+            };
+            ![i, by].into_iter().all(is_side)
+        })
         // The check `same-place` reports duplicates.
         .filter(|&(i, by)| {
             !super::objects::same(
@@ -126,6 +135,36 @@ pub(super) fn invisible(scene_probe: &SceneProbe) -> Vec<Finding> {
         findings.push(Finding::from(diagnostic));
     }
     findings
+}
+
+/// Returns true if an object is a flat shape with an end.
+fn is_flat(scene_probe: &SceneProbe, object: u32) -> bool {
+    let object = &scene_probe.world().objects()[object as usize];
+    object.bounds().is_some() && shape(object).is_some_and(|shape| shape.flip().is_some())
+}
+
+/// Reports an invisible ball around the camera and all other objects, which hide it.
+fn around_everything(scene_probe: &SceneProbe) -> Option<Finding> {
+    let world = scene_probe.world();
+    let eye = world.camera().pose().center;
+    let around = super::containment::containing_objects(world, eye).into_iter().find(|&number| {
+        let ball = &world.objects()[number as usize];
+        let others = world.objects().iter().enumerate().filter(|(other, _)| *other as u32 != number);
+        let mut centers = others.filter_map(|(_, other)| Some(other.bounds()?.center()));
+        is_ball(ball)
+            && scene_probe.visibilities()[number as usize] != Visibility::Visible
+            && !scene_probe.probes.iter().any(|probe| probe.indirect.contains(&number))
+            && !world.may_emit(ball.material)
+            && !super::area_lights::transmits_light(scene_probe, number)
+            && world.objects().len() > 2
+            && centers.all(|center| ball.contains(center))
+    })?;
+    let size = world.objects()[around as usize].bounds()?.size().max_element();
+    let message = format!("the camera and all other objects are inside the {}", scene_probe.object(around));
+    let diagnostic = Diagnostic::warning(message)
+        .effect("the object is invisible, because the others hide its inside")
+        .help(format!("make it smaller, or remove it: its radius is {}", number(0.5 * size)));
+    Some(Finding::from(scene_probe.at_value(diagnostic, scene_probe.object_span(around), &["radius"])))
 }
 
 /// Reports objects of which the camera sees only hidden backs.

@@ -9,7 +9,7 @@ use super::verdict::{GRAZING, LightVerdict, MAX_LIGHTS, VISIBLE, most_common};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::{block, section};
 use durer_render::world::Material;
-use durer_scene::camera::Projection;
+use durer_scene::camera::Projection as _;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
@@ -30,6 +30,10 @@ pub(super) fn none_contributes(scene_probe: &SceneProbe) -> bool {
     let verdicts = scene_probe.verdicts();
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != LightVerdict::Works)
 }
+
+/// Cosine between the direction of a light and the camera's `up` above which the light shines
+/// upwards.
+const MIN_UPWARDS: f32 = 0.2;
 
 /// Effect of a light that does not contribute.
 const NO_CONTRIBUTION: &str = "this light contributes nothing to the picture";
@@ -136,10 +140,41 @@ fn transmits(scene_probe: &SceneProbe, object: u32) -> bool {
     }
 }
 
-/// Reports lights that an object blocks from all visible surfaces.
+/// Returns true if a direction points upwards, as seen by the camera.
+pub(super) fn is_upwards(scene_probe: &SceneProbe, direction: Vec3) -> bool {
+    let up = scene_probe.world().camera().pose().up.normalize_or(Vec3::Y);
+    direction.normalize_or_zero().dot(up) > MIN_UPWARDS
+}
+
+/// Returns true if a light that an object blocks from the visible surfaces also fails to light them
+/// after reflections. In a scene with other lights, only an infinite plane is to blame.
+fn is_lost(scene_probe: &SceneProbe, light: usize, object: u32) -> bool {
+    if !scene_probe.is_physical() || scene_probe.is_dark() {
+        return true;
+    }
+    let is_plane = scene_probe.world().objects()[object as usize].bounds().is_none();
+    let is_opaque = !super::area_lights::transmits_light(scene_probe, object);
+    // Light can enter a room through a narrow slot.
+    let is_alone = || super::verdict::blocks_alone(scene_probe, light, object);
+    let is_unlit = || !super::scene_probe::Reach::of(scene_probe).is_lit_by(scene_probe, light);
+    is_opaque && (is_plane || none_contributes(scene_probe)) && is_alone() && is_unlit()
+}
+
+/// Reports objects that block lights, or the light of the sky, from all visible surfaces.
 pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = blocked_lights(scene_probe);
+    if findings.is_empty() {
+        findings.extend(super::reach::sky_blocked(scene_probe));
+    }
+    findings
+}
+
+fn blocked_lights(scene_probe: &SceneProbe) -> Vec<Finding> {
     for_each_verdict(scene_probe, |light, verdict| {
         let LightVerdict::Blocked(object) = verdict else { return None };
+        if !is_lost(scene_probe, light, object) {
+            return None;
+        }
         let name = scene_probe.object(object);
         let message = format!("the {name} blocks this light from all visible surfaces");
         let (diagnostic, _) = no_contribution(scene_probe, light, message)?;
@@ -150,6 +185,11 @@ pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
                               the light travels"
             }
             (None, true) => "the light is behind the plane: move it to the other side",
+            (Some(_), false)
+                if scene_probe.world().lights()[light].direction().is_some_and(|way| is_upwards(scene_probe, way)) =>
+            {
+                "turn the light over: it shines upwards, from below the occluder"
+            }
             (Some(_), false) => "turn the light, or move the occluder",
             (Some(_), true) => "move the light or the occluder",
         };
@@ -348,17 +388,46 @@ fn along_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
         .collect()
 }
 
+/// Reports the only light of a path-traced scene if it shines upwards and most of the visible
+/// surfaces face away from it.
+fn from_below(scene_probe: &SceneProbe) -> Option<Finding> {
+    let world = scene_probe.world();
+    let [Light::Directional(own)] = world.lights() else { return None };
+    // In the light of a sky or of lights, it can be a weak second light.
+    let has_other_light = world.environment().is_some()
+        || world.cube_map().is_some()
+        || !super::area_lights::emissive_objects(scene_probe).is_empty();
+    if has_other_light {
+        return None;
+    }
+    let lit = scene_probe.hits().filter_map(|(_, hit)| hit.contribution(0));
+    let (all, away) = lit.fold((0, 0), |(all, away), lit| (all + 1, away + usize::from(lit.cosine < -GRAZING)));
+    let span = span(scene_probe, 0).filter(|_| is_upwards(scene_probe, own.direction) && away * 2 > all)?;
+    let message = format!("this light shines upwards: {} of the visible surfaces face away", percent(away, all));
+    let turned = vector(-own.direction);
+    let diagnostic = Diagnostic::warning(message)
+        .effect("the light is visible only on the undersides and sides of objects")
+        .help(format!("write `direction {turned}`: `direction` is the direction in which the light travels"))
+        .fix_at(scene_probe.field_span(span, &["direction"]), turned);
+    Some(Finding::from(scene_probe.at_value(diagnostic, span, &["direction"])))
+}
+
 /// Reports lights behind the visible surfaces.
 pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
-    if scene_probe.is_physical() && !scene_probe.is_dark() {
-        return if super::physical::has_only_lights(scene_probe) { along_plane(scene_probe) } else { Vec::new() };
-    }
-    let mut findings = mostly_dark(scene_probe);
-    if findings.is_empty() {
+    // Paths also find light that is reflected, and that of the background.
+    let is_bright = scene_probe.is_physical() && !scene_probe.is_dark();
+    let mut findings = if is_bright { Vec::new() } else { mostly_dark(scene_probe) };
+    if findings.is_empty() && (!is_bright || super::physical::has_only_lights(scene_probe)) {
         findings = along_plane(scene_probe);
     }
+    if is_bright && !none_contributes(scene_probe) {
+        findings.extend(from_below(scene_probe));
+        return findings;
+    }
     findings.extend(for_each_verdict(scene_probe, |light, verdict| {
-        if verdict != LightVerdict::Behind {
+        if verdict != LightVerdict::Behind
+            || is_bright && super::scene_probe::Reach::of(scene_probe).is_lit_by(scene_probe, light)
+        {
             return None;
         }
         let lit: Vec<&LightContribution> = scene_probe.hits().filter_map(|(_, hit)| hit.contribution(light)).collect();
@@ -367,10 +436,13 @@ pub(super) fn behind(scene_probe: &SceneProbe) -> Vec<Finding> {
         if turned * 2 < away {
             return grazing(scene_probe, &[light]);
         }
-        let message =
-            format!("this light is behind the visible surfaces: {} of them face away", percent(away, lit.len()));
-        let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
         let emitter = &description(scene_probe, light)?.value;
+        let from = match emitter.direction().filter(|_| emitter.position().is_none()) {
+            Some(direction) if is_upwards(scene_probe, direction) => "shines upwards, from behind",
+            _ => "is behind",
+        };
+        let message = format!("this light {from} the visible surfaces: {} of them face away", percent(away, lit.len()));
+        let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
         let diagnostic = match emitter.position() {
             None => {
                 let turned = vector(-emitter.direction()?);

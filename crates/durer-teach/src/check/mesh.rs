@@ -2,6 +2,7 @@
 
 use super::finding::{Finding, counted, percent, vector};
 use super::lines::lines;
+use super::mesh_files::normals::InvalidNormals;
 use super::mesh_files::topology::Topology;
 use super::mesh_files::{Inwards, MeshFile};
 use super::scene_probe::SceneProbe;
@@ -302,6 +303,12 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
             && mesh.compiled_objects(scene_probe).all(kept)
     });
     let turned: Vec<&MeshFile> = turned.collect();
+    let against = scene_probe.models().iter().filter(|mesh| {
+        !mesh.is_inside_out()
+            && mesh.odd_normals.as_ref().is_some_and(InvalidNormals::is_against_all)
+            && mesh.compiled_objects(scene_probe).all(kept)
+    });
+    let hidden: Vec<Finding> = against.filter_map(|mesh| wound_against_normals(scene_probe, mesh)).collect();
     // If all meshes are inside out, the program that wrote the file reversed them.
     let all = turned.len() == scene_probe.models().len();
     let say = |mesh: &MeshFile| {
@@ -329,7 +336,23 @@ fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
         let severity = if most || all { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
     };
-    turned.into_iter().filter_map(say).collect()
+    turned.into_iter().filter_map(say).chain(hidden).collect()
+}
+
+/// Reports a mesh whose material hides the backs if the order of the vertices of its triangles
+/// contradicts its normals.
+fn wound_against_normals(scene_probe: &SceneProbe, mesh: &MeshFile) -> Option<Finding> {
+    let objects = scene_probe.world().objects();
+    let index = objects.iter().position(|object| mesh.is_used_at(object.span))? as u32;
+    if !super::visibility::hides_backs_of(scene_probe, index) {
+        return None;
+    }
+    let message = format!("the triangles of the {} are wound against its normals", scene_probe.object(index));
+    let diagnostic = Diagnostic::warning(message)
+        .at(scene_probe.object_span(index))
+        .effect("the sides to which its normals point are hidden, because its material is not double-sided")
+        .help("reverse the order of the vertices of each triangle, which must be counter-clockwise as seen from the front");
+    Some(Finding::from(diagnostic))
 }
 
 /// Returns true if an object uses a mesh that `inside-out` reports.

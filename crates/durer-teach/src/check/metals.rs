@@ -15,15 +15,21 @@ const MAX_METAL_CHANNEL: f32 = 0.2;
 /// Minimum number of samples for a conclusion.
 const MIN_SAMPLES: usize = 6;
 
-/// Reports metals of a glTF file without `metallicFactor` that are black because they have nothing
-/// to reflect.
+/// Factor on the radiance of the surroundings below which a surface shows hardly anything else.
+const MAX_REFLECTED: f32 = 1.1;
+
+/// Reports metals of a glTF file without `metallicFactor` that are dull because they have nothing
+/// to reflect but black or grey surroundings.
 pub(super) fn metal_by_default(scene_probe: &SceneProbe) -> Vec<Finding> {
     let world = scene_probe.world();
     let is_gltf = scene_probe.model_format().is_some_and(|format| format.name == "glTF");
-    let black = world.environment().is_none() && (world.background() == Color::ZERO || world.is_dark());
-    if !is_gltf || !scene_probe.is_physical() || !black {
+    let surroundings = if world.is_dark() { Color::ZERO } else { world.background() };
+    // The lights of the studio light metals well.
+    let has_studio = scene_probe.input.scene.render_defaults.clamp.is_some();
+    if !is_gltf || !scene_probe.is_physical() || world.environment().is_some() || has_studio {
         return Vec::new();
     }
+    let dark = DARK.max(MAX_REFLECTED * surroundings.max_element());
     let mut findings = Vec::new();
     for (number, material, m) in layers(scene_probe) {
         let plain = m.base_metalness_texture.is_none() && m.metallic_roughness_texture.is_none();
@@ -33,9 +39,9 @@ pub(super) fn metal_by_default(scene_probe: &SceneProbe) -> Vec<Finding> {
         let own = scene_probe
             .lit_probes()
             .filter(|(probe, _)| probe.hit.as_ref().is_some_and(|hit| hit.material as usize == number));
-        let (all, dark) =
-            own.fold((0, 0), |(all, dark), (_, color)| (all + 1, dark + usize::from(color.max_element() < DARK)));
-        let is_dark = dark as f32 >= MIN_DARK * all as f32;
+        let (all, below) =
+            own.fold((0, 0), |(all, below), (_, color)| (all + 1, below + usize::from(color.max_element() < dark)));
+        let is_dark = below as f32 >= MIN_DARK * all as f32;
         // No metal has a colour as pure as that of paint, but anodised metal can have it.
         let is_paint = m.base_color.min_element() < MAX_METAL_CHANNEL * m.base_color.max_element();
         if all < MIN_SAMPLES || !is_dark && !is_paint {
@@ -46,8 +52,8 @@ pub(super) fn metal_by_default(scene_probe: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(material.span)
             .effect(match is_dark {
-                true => "a metal shows only its surroundings, which are black here, so the objects are nearly black",
-                false => "a metal shows only its surroundings, most of which are black here, so the objects are dark",
+                true => "a metal shows only its surroundings, which are plain here, so the objects are dark and dull",
+                false => "a metal shows only its surroundings, most of which are plain here, so the objects are dark",
             })
             .help("for another material, write `\"metallicFactor\": 0`: the factor is 1 by default");
         findings.push(Finding::from(diagnostic));

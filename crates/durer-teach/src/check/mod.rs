@@ -51,6 +51,7 @@ mod placement;
 mod probes;
 mod quadrics;
 mod quirks;
+mod reach;
 mod repair;
 mod room;
 mod scene_probe;
@@ -107,11 +108,13 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("dark-colors", &["too-dark", "black-material"]),
     ("NODE_NO_SCENE", &["unused-material"]),
     ("repeated", &["light-behind", "light-blocked", "light-faint", "too-dark", "unused-material"]),
-    ("black-light", &["same-color", "too-dark", "one-color", "no-emitter", "mostly-black"]),
+    ("black-light", &["same-color", "too-dark", "one-color", "no-emitter", "mostly-black", "unseen"]),
+    ("flat-transform", &["unseen"]),
     ("missing-field", &["light-blocked", "camera-away", "all-missed"]),
     ("sun-below", &["no-emitter"]),
     ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
     ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),
+    ("light-blocked", &["mostly-black", "too-dark"]),
     ("mostly-black", &["too-dark", "lamp-blocked", "light-behind"]),
     ("color-range", &["too-bright"]),
     ("full-ambient", &["too-bright"]),
@@ -119,6 +122,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("pow-zero", &["too-bright"]),
     ("light-twice", &["too-bright"]),
     ("light-divides", &["not-finite"]),
+    ("not-finite", &["too-bright"]),
     ("no-falloff", &["not-finite", "light-divides"]),
     ("stray-points", &["too-small", "all-missed", "one-color", "out-of-scale", "too-dark", "holes"]),
     ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "light-blocked", "upside-down"]),
@@ -141,7 +145,20 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
             "degenerate-mesh",
         ],
     ),
-    ("out-of-scale", &["unseen", "light-blocked", "tiny", "camera-inside", "seen-from-behind", "light-divides"]),
+    (
+        "out-of-scale",
+        &[
+            "unseen",
+            "light-blocked",
+            "lamp-blocked",
+            "lamp-turned",
+            "too-dark",
+            "tiny",
+            "camera-inside",
+            "seen-from-behind",
+            "light-divides",
+        ],
+    ),
     (
         "camera-inside",
         &["seen-from-behind", "light-inside", "light-behind", "light-blocked", "lamp-blocked", "lamp-turned", "unseen"],
@@ -172,6 +189,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("lamp-in-glass", &["too-bright", "mostly-black", "too-dark", "one-color"]),
     ("scaled-move", &["unseen", "squashed", "plane-through"]),
     ("angle-first", &["radians"]),
+    ("radians", &["lamp-turned", "lamp-blocked"]),
     ("metal-default", &["nothing-mirrored", "mostly-black", "too-dark"]),
     ("mirrored-wall", &["upside-down"]),
     ("too-dark", &["one-color"]),
@@ -181,7 +199,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
 /// the reader and the compiler.
 pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scene_probe = SceneProbe::new(input);
-    let mut findings: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
+    let applies = |diagnostic: &&Diagnostic| !physical::does_not_apply(&scene_probe, diagnostic.code);
+    let mut findings: Vec<Finding> = diagnostics.iter().filter(applies).cloned().map(Finding::from).collect();
     findings.iter_mut().for_each(|finding| completion::complete(&scene_probe, finding));
     for check in CHECKS.iter().filter(|check| !physical::does_not_apply(&scene_probe, check.code)) {
         let of_kind = (check.find)(&scene_probe).into_iter();
@@ -213,6 +232,11 @@ pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
     let ignored = |finding: &Finding| finding.diagnostic.code == "foreign-word" && finding.affects_whole_picture;
     if findings.iter().any(ignored) {
         findings.retain(|finding| !["light-faint", "too-bright", "too-dark"].contains(&finding.diagnostic.code));
+    }
+    // An invalid value comes before the NaN values that it causes.
+    if findings.iter().any(|finding| finding.diagnostic.code == "not-finite" && finding.affects_whole_picture) {
+        let invalid = findings.iter_mut().filter(|finding| finding.diagnostic.code == "bad-value");
+        invalid.for_each(|finding| finding.affects_whole_picture = true);
     }
     // Drop findings that follow from a reported cause.
     for (cause, consequences) in CONSEQUENCES {

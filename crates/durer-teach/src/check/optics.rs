@@ -43,7 +43,7 @@ pub(super) fn wide_scatter(scene_probe: &SceneProbe) -> Vec<Finding> {
         let way = m.subsurface_radius * m.subsurface_radius_scale.max_element();
         let least = m.subsurface_radius * m.subsurface_radius_scale.min_element();
         let is_wide = way > MAX_MEAN_FREE_PATH * thick || least > MAX_LEAST_MEAN_FREE_PATH * thick;
-        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || !is_wide {
+        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || m.walls == Walls::Thin || !is_wide {
             return None;
         }
         let (radius, less) = (number(m.subsurface_radius), number(0.1 * thick));

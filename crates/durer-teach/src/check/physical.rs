@@ -22,6 +22,7 @@ const LOCAL_LIGHT_CHECKS: &[&str] = &[
     "no-exponent",
     "light-cancelled",
     "same-color",
+    "no-light",
 ];
 
 /// Codes of the local lighting checks that can explain a black path-traced picture.
@@ -29,18 +30,20 @@ const DARKNESS_CHECKS: &[&str] = &["light-inside", "light-blocked", "light-behin
 
 /// Returns true if a check is for local lighting and does not apply to the scene.
 pub(super) fn does_not_apply(scene_probe: &SceneProbe, code: &str) -> bool {
-    let own = ["light-inside", "light-behind", "light-faint"];
+    let own = ["light-inside", "light-blocked", "light-behind", "light-faint"];
     let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark() || own.contains(&code);
     scene_probe.is_physical() && LOCAL_LIGHT_CHECKS.contains(&code) && !says_why()
 }
 
+/// Returns true if the background emits light.
+pub(super) fn has_sky(scene_probe: &SceneProbe) -> bool {
+    let world = scene_probe.world();
+    world.environment().is_some() || world.cube_map().is_some() || world.background() != Color::ZERO && !world.is_dark()
+}
+
 /// Returns true if all light comes from lights: nothing else emits light.
 pub(super) fn has_only_lights(scene_probe: &SceneProbe) -> bool {
-    let world = scene_probe.world();
-    let black = world.environment().is_none()
-        && world.cube_map().is_none()
-        && (world.background() == Color::ZERO || world.is_dark());
-    black && super::area_lights::emissive_objects(scene_probe).is_empty()
+    !has_sky(scene_probe) && super::area_lights::emissive_objects(scene_probe).is_empty()
 }
 
 /// Reports a scene in which nothing emits light.

@@ -80,7 +80,11 @@ fn wide_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
     }
     let say = |(i, material, phong): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let (word, exponent) = sharpness(phong)?;
-        if exponent >= MIN_EXPONENT || phong.specular_color.max_element() < 0.02 || phong.refraction_index.is_some() {
+        // The reader reports negative exponents.
+        if !(0.0..MIN_EXPONENT).contains(&exponent)
+            || phong.specular_color.max_element() < 0.02
+            || phong.refraction_index.is_some()
+        {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))

@@ -8,7 +8,7 @@ use super::shapes::is_black;
 use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
 use durer_render::world::Material;
-use durer_scene::math::Color;
+use durer_scene::math::{Color, Ray, Vec3};
 use std::ops::Deref;
 use std::sync::OnceLock;
 
@@ -28,6 +28,21 @@ pub struct SceneProbe<'a> {
     models: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
     radiances: OnceLock<Vec<Color>>,
+    pub(super) reach: OnceLock<Reach>,
+}
+
+/// Points from which light can reach the camera. They are visible, or random paths from the visible
+/// points lead to them.
+#[derive(Debug, Default)]
+pub(super) struct Reach {
+    /// Each point with the normal of the visible side. Points in fog have no normal.
+    pub(super) points: Vec<(Vec3, Option<Vec3>)>,
+    /// The rays that are reflected at the visible points, with the objects that they leave and hit.
+    pub(super) first: Vec<(u32, Option<u32>)>,
+    /// The reflected rays that end on an object, and that object.
+    pub(super) ends: Vec<(Ray, u32)>,
+    /// True if some reflected ray leaves the scene.
+    pub(super) escapes: bool,
 }
 
 impl<'a> Deref for SceneProbe<'a> {
@@ -51,6 +66,7 @@ impl<'a> SceneProbe<'a> {
             models: OnceLock::new(),
             material_rays: OnceLock::new(),
             radiances: OnceLock::new(),
+            reach: OnceLock::new(),
         }
     }
 

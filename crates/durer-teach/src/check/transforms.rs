@@ -114,61 +114,77 @@ pub(super) fn scaled_move(scene_probe: &SceneProbe) -> Vec<Finding> {
         let ObjectKind::Transform(ops, inner) = &object.node else { continue };
         let found = world.objects().iter().enumerate().find(|(_, own)| is_same_span(own.span, inner.span));
         let Some((index, own)) = found else { continue };
-        let Some((scale, by, factor)) = scale_before_move(ops) else { continue };
-        let Some(size) = own.bounds().filter(|bounds| !bounds.is_empty()).map(|bounds| bounds.size().max_element())
-        else {
-            continue;
+        let Some((scale, by, scaled)) = scale_before_move(ops) else { continue };
+        let Some(bounds) = own.bounds().filter(|bounds| !bounds.is_empty()) else { continue };
+        let size = bounds.size().max_element();
+        let factor = scaled.length() / by.length();
+        let shrinks = factor < 1.0 / MIN_FACTOR;
+        let whole: f32 = ops.iter().filter_map(scale_of).map(|scale| (scale * by).length() / by.length()).product();
+        // A later scale that undoes the first one shows that the size is intended, and so does a
+        // scale that makes the object flat.
+        let is_undone = (0.1..10.0).contains(&whole) || scale.max_element() > MIN_FACTOR * scale.min_element();
+        let hardly = is_undone && shrinks && scaled.length() < NEGLIGIBLE * size && by.length() > NOTABLE * size;
+        let meant = bounds.center() + by - scaled;
+        let is_lost = match scene_probe.visibilities()[index] {
+            Visibility::Outside => factor > MIN_FACTOR,
+            Visibility::Hidden(_) => shrinks && by.length() > NOTABLE * size,
+            _ => false,
         };
-        let moved = factor * by.length();
-        let whole: f32 = ops.iter().filter_map(uniform_scale).product();
-        // A later scale that undoes the first one shows that the size is intended.
-        let is_undone = (0.1..10.0).contains(&whole) && factor < 1.0 / MIN_FACTOR;
-        let hardly = is_undone && moved < NEGLIGIBLE * size && by.length() > NOTABLE * size;
-        let shift = by - factor * by;
-        let is_lost = scene_probe.visibilities()[index] == Visibility::Outside && factor > MIN_FACTOR;
-        let meant = own.bounds().map_or(Vec3::ZERO, |bounds| bounds.center()) + shift;
-        let away = is_lost && super::visibility::is_in_view(scene_probe, meant);
-        if !hardly && !away || findings.len() == MAX_FINDINGS {
+        let lost = is_lost && super::visibility::is_in_view(scene_probe, meant);
+        // A translation before a scale often moves the middle or a side of an object to the origin.
+        let is_centering = own.to_world.as_ref().is_some_and(|to_world| {
+            let local = Aabb::around(bounds.corners().map(|corner| to_world.inverse_point(corner) + own.center + by));
+            let near = 0.1 * local.size().max(0.1 * by.abs());
+            let is_zero = |place: Vec3| place.abs().cmple(near) | by.abs().cmplt(Vec3::splat(0.1 * by.length()));
+            shrinks && (is_zero(local.center()) | is_zero(local.min) | is_zero(local.max)).all()
+        });
+        if !hardly && !lost || is_centering || findings.len() == MAX_FINDINGS {
             continue;
         }
+        let is_uniform = scale.max_element() - scale.min_element() < 1e-3 * scale.max_element();
         let message = format!(
             "the scale by {} before the translation by {} also scales it: the object moves by {}",
-            number(scale),
+            if is_uniform { number(scale.x) } else { vector(scale) },
             vector(by),
-            vector(factor * by)
+            vector(scaled)
+        );
+        let keyword = |classic, nodes| scene_probe.keyword_of_grammar(classic, nodes);
+        let help = format!(
+            "write the `{}` before the `{}`: the transform written last is applied first",
+            keyword("Translate", "translate"),
+            keyword("Scale", "scale")
         );
         let diagnostic = Diagnostic::warning(message)
             .at(object.span)
-            .effect(match away {
+            .effect(match lost {
+                true if shrinks => "the object is hidden by another object",
                 true => "the object is outside the picture",
                 false => "the object is hardly moved",
             })
-            .help("write the `Translate` before the `Scale`: the transform written last is applied first");
+            .help(help);
         findings.push(Finding::from(diagnostic));
     }
     findings
 }
 
-/// Returns the factor of an operation that scales all axes alike.
-fn uniform_scale(op: &MatrixOp) -> Option<f32> {
+/// Returns the factors of an operation that scales.
+fn scale_of(op: &MatrixOp) -> Option<Vec3> {
     match *op {
-        MatrixOp::UniformScale(s) => Some(s.abs()),
-        MatrixOp::Scale(v) if (v.abs().max_element() - v.abs().min_element()) < 1e-3 * v.abs().max_element() => {
-            Some(v.x.abs())
-        }
+        MatrixOp::UniformScale(s) => Some(Vec3::splat(s.abs())),
+        MatrixOp::Scale(v) => Some(v.abs()),
         _ => None,
     }
 }
 
 /// Returns the last scale before the first translation of a transform, the translation, and the
-/// product of all scales before it.
-fn scale_before_move(ops: &[MatrixOp]) -> Option<(f32, Vec3, f32)> {
+/// translation scaled by all scales before it.
+fn scale_before_move(ops: &[MatrixOp]) -> Option<(Vec3, Vec3, Vec3)> {
     let at = ops.iter().position(|op| matches!(op, MatrixOp::Translate(_)))?;
     let MatrixOp::Translate(by) = ops[at] else { return None };
-    let scales: Vec<f32> = ops[..at].iter().filter_map(uniform_scale).collect();
-    let factor: f32 = scales.iter().product();
-    let is_far = !(1.0 / MIN_FACTOR..=MIN_FACTOR).contains(&factor);
-    scales.last().filter(|_| is_far && by != Vec3::ZERO).map(|scale| (*scale, by, factor))
+    let scales: Vec<Vec3> = ops[..at].iter().filter_map(scale_of).collect();
+    let scaled = scales.iter().fold(by, |scaled, scale| scaled * *scale);
+    let is_far = !(1.0 / MIN_FACTOR..=MIN_FACTOR).contains(&(scaled.length() / by.length()));
+    scales.last().filter(|_| is_far && by != Vec3::ZERO).map(|scale| (*scale, by, scaled))
 }
 
 /// Component of an axis above which it is probably an angle in degrees.

@@ -3,7 +3,7 @@
 
 use super::aim::BeamMiss;
 use super::containment::containing_objects;
-use super::probes::{LightContribution, ProbeGrid, ProbeHit};
+use super::probes::{LightContribution, Probe, ProbeGrid, ProbeHit};
 use super::shapes::point;
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
@@ -215,6 +215,26 @@ fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> 
     // The object that is most often hit first is reported, unless another one blocks the light at
     // more points.
     most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
+}
+
+/// Maximum number of points at which the shadow of one object is tested.
+const MAX_POINTS: usize = 100;
+
+/// Returns true if one object blocks a light at nearly all points that face it, even without the
+/// other objects.
+pub(super) fn blocks_alone(grid: &ProbeGrid, light: usize, object: u32) -> bool {
+    let emitter = &grid.world().lights()[light];
+    let faces = |hit: &ProbeHit| hit.contribution(light).is_some_and(|lit| lit.cosine > GRAZING);
+    let facing: Vec<_> = grid.hits().filter(|(_, hit)| hit.object != object && faces(hit)).collect();
+    let is_blocked = |(probe, hit): &&(&Probe, &ProbeHit)| {
+        let point = probe.ray.at(hit.t);
+        let seen = emitter.illuminate(point.as_dvec3());
+        let ray = Ray { t_min: 1e-3, t_max: 0.999 * seen.distance, ..Ray::new(point, seen.to_light) };
+        grid.world().hit_of(object, &ray.into()).is_some()
+    };
+    let points: Vec<_> = facing.iter().step_by(facing.len().div_ceil(MAX_POINTS).max(1)).collect();
+    let blocked = points.iter().filter(|point| is_blocked(point)).count();
+    blocked as f32 >= MAX_BLOCKED * points.len() as f32
 }
 
 /// Returns the plane that separates the camera from a light, if that plane is visible.

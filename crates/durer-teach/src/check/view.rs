@@ -59,8 +59,15 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
             findings.push(inside_glass(scene_probe, object));
             continue;
         }
+        let times = super::extent::times_larger(scene_probe, object);
         if own == 0 && super::visibility::hides_backs_of(scene_probe, object) {
-            findings.push(inside_hidden_backs(scene_probe, object));
+            findings.push(match times {
+                Some(times) => {
+                    let effect = "the object is invisible: its surface is hidden from behind";
+                    inside_giant(scene_probe, object, times, effect)
+                }
+                None => inside_hidden_backs(scene_probe, object),
+            });
             continue;
         }
         let swallowed = wrong || is_alone(scene_probe, object);
@@ -69,6 +76,14 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
             continue;
         }
         let Some(bounds) = scene_probe.world().objects()[object as usize].bounds() else { continue };
+        if let Some(times) = times {
+            let effect = match dark || scene_probe.is_dark() {
+                true => "the object blocks the light from outside, so everything visible is in its shadow",
+                false => "the object surrounds the camera, so its inside is visible",
+            };
+            findings.push(inside_giant(scene_probe, object, times, effect).affecting_whole_picture(true));
+            continue;
+        }
         let name = scene_probe.object(object);
         let outside = point_outside(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
@@ -85,12 +100,12 @@ pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
                 }
                 false => "only the inside of the object is visible",
             })
-            .help(match super::extent::times_larger(scene_probe, object) {
-                Some(times) => format!(
-                    "the object is {} times larger than all other objects: make it smaller, or move the camera out to \
-                     `center {}`",
-                    number(times),
-                    vector(outside)
+            .help(match swapped_pose(scene_probe) {
+                Some((place, to)) => format!(
+                    "if `center` and `direction` are swapped, write `center {}` and the direction from there to the \
+                     objects, `direction {}`",
+                    vector(place),
+                    vector(to)
                 ),
                 None => {
                     let shine = match shines_outwards(scene_probe, object) {
@@ -129,6 +144,65 @@ fn inside_hidden_backs(scene_probe: &SceneProbe, object: u32) -> Finding {
         .effect("the object is invisible: its surface is hidden from behind")
         .help("move the camera out of the object, or make the material double-sided");
     around_camera(scene_probe, object, diagnostic)
+}
+
+/// Returns the camera's `direction` as a position and the direction from there to the objects, if
+/// the length of `direction` is that of a distance at which a camera sees all objects.
+fn swapped_pose(scene_probe: &SceneProbe) -> Option<(Vec3, Vec3)> {
+    let (pose, bounds) = (scene_probe.world().camera().pose(), scene_probe.world().bounds());
+    let size = bounds.size().length();
+    let is_far = (1.2 * size..6.0 * size).contains(&(pose.direction - bounds.center()).length());
+    let written = scene_probe.field_span(scene_probe.input.scene.camera_span, &["direction"]);
+    let is_written = written.is_some() && scene_probe.model_format().is_none() && bounds.contains(pose.center);
+    (is_far && is_written).then(|| (pose.direction, bounds.center() - pose.direction))
+}
+
+/// Returns a warning about an object around the camera that is so much larger than all others that
+/// its size or its place is wrong, and not that of the camera.
+fn inside_giant(scene_probe: &SceneProbe, object: u32, times: f32, effect: &str) -> Finding {
+    let objects = scene_probe.world().objects();
+    let others = objects.iter().enumerate().filter(|(number, _)| *number as u32 != object);
+    let mut boxes = others.filter_map(|(_, object)| object.bounds().filter(|bounds| !bounds.is_empty())).peekable();
+    let (what, are) =
+        match boxes.clone().all(|own| objects[object as usize].contains(own.center())) && boxes.peek().is_some() {
+            true => ("the camera and all other objects", "are"),
+            false => ("the camera", "is"),
+        };
+    let message = format!(
+        "{what} {are} inside the {}, which is {} times larger than all other objects",
+        scene_probe.object(object),
+        number(times)
+    );
+    let own = objects[object as usize].bounds().unwrap_or(Aabb::EMPTY);
+    let size = number(own.size().max_element());
+    let diagnostic =
+        Diagnostic::warning(message).effect(effect).related(scene_probe.input.scene.camera_span, "the camera");
+    let up = scene_probe.world().camera().pose().up.normalize_or(Vec3::Y);
+    let height = |bounds: &Aabb| bounds.corners().map(|corner| corner.dot(up));
+    let top = height(&own).into_iter().fold(f32::NEG_INFINITY, f32::max);
+    let lowest = boxes.flat_map(|bounds| height(&bounds)).fold(f32::INFINITY, f32::min);
+    let span = scene_probe.object_span(object);
+    Finding::from(match super::extent::is_ground(scene_probe, object) && lowest < top {
+        true => {
+            let lowered = own.center() - (top - lowest) * up;
+            let help = format!(
+                "if it is the ground, lower it by {}, to the bottom of the other objects: its center would be at {}",
+                number(top - lowest),
+                vector(lowered)
+            );
+            scene_probe.at_value(diagnostic.help(help), span, &["center"])
+        }
+        false => {
+            let sky = match super::physical::has_sky(scene_probe) {
+                true => ", or remove it if it is a sky: the background surrounds the scene without an object",
+                false => "",
+            };
+            let help = format!(
+                "its largest side is {size}: check its size and its unit, and the transforms that enclose it{sky}"
+            );
+            scene_probe.at_value(diagnostic.help(help), span, &["radius"])
+        }
+    })
 }
 
 /// Completes a finding about an object around the camera with the positions of both.
