@@ -16,6 +16,7 @@ use crate::options::{GivenOptions, IntegratorArgs, SceneArgs, name_of};
 use crate::progress::show_progress;
 use crate::report;
 use crate::terminal::print_error_line;
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Arg, Args};
 use durer::camera::PerspectiveCamera;
 use durer::daylight;
@@ -25,7 +26,7 @@ use durer::image::{Destination, save_all};
 use durer::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSettings};
 use durer::light::{Light, PHOTOMETRIC_FIELDS};
 use durer::math::{Color, LUMINANCE, Ray64, Vec3};
-use durer::measure::{MeasureOptions, Sensor, measure};
+use durer::measure::{IlluminanceKind, MeasureOptions, Sensor, measure};
 use durer::options::vector;
 use durer::render::Job;
 use durer::scene::defaults::ModelAxes;
@@ -79,6 +80,9 @@ Units: illuminance is in lux if the scene's light has units (`emissionLuminance`
 photometric files, a sky), and in Radiance scenes. Irradiance has one value per colour channel: in W/m^2 in Radiance
 scenes, else in the unit of the illuminance. Light that arrives from behind the normal is ignored.
 
+--illuminance cylindrical measures the light on the side of a small upright cylinder, as EN 12464-1 asks for faces at a
+height of 1.2 m or 1.6 m, and spherical the light on a small sphere.
+
 The standard errors assume independent samples, so the actual errors are smaller. Lights that only BSDF sampling can find,
 for example in mirrors, increase the standard errors. Light that needs more than --bounces is missing and not part of them."
 )]
@@ -96,6 +100,17 @@ pub struct MeasureArgs {
     /// Normal of the receiving surface [default: upwards]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
+    /// Quantity to measure [default: planar]: the illuminance of a plane, the cylindrical
+    /// illuminance (the mean of all planes through the normal), or the mean spherical illuminance
+    #[arg(
+        id = "kind",
+        long = "illuminance",
+        value_name = "KIND",
+        conflicts_with = "observers",
+        value_parser = PossibleValuesParser::new(IlluminanceKind::ALL.map(IlluminanceKind::name))
+            .map(|name| IlluminanceKind::from_name(&name).unwrap_or_default())
+    )]
+    pub kind: Option<IlluminanceKind>,
     /// Grid of points: a corner, two edges, and the number of points along each edge
     #[arg(id = "grids", long = "grid", value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid::parse, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
@@ -103,6 +118,9 @@ pub struct MeasureArgs {
     /// values, as an SVG file
     #[arg(long, value_name = "FILE.svg", requires = "grids")]
     pub plan: Option<PathBuf>,
+    /// Values of the lines of --plan, for example 100,300,500 [default: round values]
+    #[arg(long, value_name = "VALUE,VALUE,...", value_delimiter = ',', value_parser = level, requires = "plan")]
+    pub levels: Vec<f64>,
     /// Rate the glare for an eye that looks at a point (UGR); can be given several times
     #[arg(id = "observers", long = "ugr", value_name = "EYE:TARGET", value_parser = glare::parse, allow_hyphen_values = true, conflicts_with_all = ["point", "list", "normal", "grids", "error"])]
     pub observers: Vec<[Vec3; 2]>,
@@ -148,6 +166,12 @@ fn share(text: &str) -> Result<f64, String> {
     share.filter(|share| *share > 0.0 && *share <= 1.0).ok_or_else(|| "expected a share such as 1% or 0.01".into())
 }
 
+/// Parses the value of an isolux line.
+fn level(text: &str) -> Result<f64, String> {
+    let level = text.trim().parse().ok().filter(|level: &f64| level.is_finite() && *level > 0.0);
+    level.ok_or_else(|| "expected numbers above 0, for example 100,300,500".into())
+}
+
 /// Returns the first point that is not on a surface. For such a point, a short ray along its normal
 /// hits nothing.
 fn in_the_air(world: &World, sensors: &[Sensor]) -> Option<Vec3> {
@@ -161,17 +185,66 @@ fn in_the_air(world: &World, sensors: &[Sensor]) -> Option<Vec3> {
     sensors.iter().find(|sensor| !lies_on_a_surface(sensor)).map(|sensor| sensor.point)
 }
 
-/// Notes which light of a file in the scene language has no photometric unit.
-fn note_units(scene: &Scene, world: &World) {
-    if scene.up.is_some() || world.lumens().is_some() {
-        return;
+/// Unit of measured light.
+#[derive(Clone, Copy, PartialEq)]
+enum LightUnit {
+    /// Lux, from photometric units or a sky.
+    Lux,
+    /// Lux, with the irradiance in W/m^2.
+    Watts,
+    /// Unit of a scene whose lights have no photometric unit.
+    Own,
+}
+
+impl LightUnit {
+    /// Returns the unit of the light of a scene. In the scene language, one light without a
+    /// photometric unit is enough for the scene's own unit.
+    fn of(scene: &Scene, world: &World) -> LightUnit {
+        match world.lumens() {
+            Some(_) => LightUnit::Watts,
+            None if scene.up.is_none() && lights_without_unit(scene) > 0 => LightUnit::Own,
+            None => LightUnit::Lux,
+        }
     }
+
+    /// Returns the unit of the illuminance after a number, or nothing for the scene's own unit.
+    fn suffix(self) -> &'static str {
+        if self == LightUnit::Own { "" } else { " lux" }
+    }
+
+    /// Returns the units of illuminance and irradiance.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            LightUnit::Lux => ["lux", "lux"],
+            LightUnit::Watts => ["lux", "W/m^2"],
+            LightUnit::Own => ["the scene's own unit", "the scene's own unit"],
+        }
+    }
+}
+
+/// Returns the number of lights without a photometric unit.
+fn lights_without_unit(scene: &Scene) -> usize {
     let has_unit = |light: &Light| {
         let mut fields = light.fields().iter().enumerate();
         matches!(light, Light::Photometric(_))
             || fields.any(|(i, field)| PHOTOMETRIC_FIELDS.contains(&field.name) && light.get(i).is_some())
     };
-    let plain = scene.lights.iter().flatten().filter(|light| !has_unit(&light.value)).count();
+    scene.lights.iter().flatten().filter(|light| !has_unit(&light.value)).count()
+}
+
+/// Notes which light of the file counts: that nothing emits light, that lights have no photometric
+/// unit, or that the background emits light.
+fn note_light(scene: &Scene, world: &World, unit: LightUnit) {
+    let has_background = world.environment().is_some() || world.background() != Color::ZERO;
+    if world.lights().is_empty() && !has_background && !scene.emits_light() {
+        let help = "`--studio soft` measures the lights that `durer render` adds to such a model";
+        let note = Diagnostic::note("nothing in the file emits light");
+        report::note(&if scene.up.is_some() { note.help(help) } else { note });
+    }
+    if scene.up.is_some() || unit == LightUnit::Watts {
+        return;
+    }
+    let plain = lights_without_unit(scene);
     if plain > 0 {
         let message = format!(
             "{} {} without a photometric unit (`candela`, `lumens` or `lux`), so that the values are in the scene's own \
@@ -195,6 +268,7 @@ const CAMERA: &[&str] = &["view", "eye", "target", "fov", "camera", "view-file",
 fn of_measure(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "at" => arg.long("moment"),
+        "studio" => arg.help("Measure these lights instead of the light of the model"),
         "integrator" => arg.help("Integrator: path, or photons for light that mirrors and glass focus [default: path]"),
         _ if CAMERA.contains(&&*name_of(arg.get_id())) => arg.hide(true),
         _ => arg,
@@ -238,8 +312,12 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid, or a list with --points"
         )));
     }
+    let unit = match &weather {
+        Some(_) => LightUnit::Lux,
+        None => LightUnit::of(&compiled.loaded.scene, &compiled.world),
+    };
     if weather.is_none() && !args.quiet {
-        note_units(&compiled.loaded.scene, &compiled.world);
+        note_light(&compiled.loaded.scene, &compiled.world, unit);
     }
     let mut year = None;
     match (&weather, &args.weather.sky_hour) {
@@ -274,10 +352,17 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         if path.photons.is_some() {
             return Err(invalid_input("the daylight of a year needs --integrator path"));
         }
+        if args.kind.is_some_and(|kind| kind != IlluminanceKind::Planar) {
+            return Err(invalid_input("the daylight of a year is measured on planes; --sky-hour measures one hour"));
+        }
         let outputs = annual::Outputs { plan, hours };
         return threads::install(args.threads.map(usize::from), || {
             annual::run(args, &path, (weather, year), (&sensors, alone), up, &outputs)
         });
+    }
+    let kind = args.kind.unwrap_or_default();
+    if path.photons.is_some() && kind != IlluminanceKind::Planar {
+        return Err(invalid_input("photons are stored on surfaces: a cylinder or a sphere needs --integrator path"));
     }
     if path.photons.is_some()
         && let Some(point) = in_the_air(&compiled.world, &sensors)
@@ -289,15 +374,14 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
     }
     let samples = args.samples.unwrap_or_else(|| MeasureOptions::default_samples(args.error));
-    let options = MeasureOptions { samples, error: args.error, seed: args.seed, lumens };
+    let options = MeasureOptions { kind, samples, error: args.error, seed: args.seed, lumens };
     let measured = threads::install(args.threads.map(usize::from), || {
         show_progress("measuring", |progress| measure(&path, &sensors, &options, progress))
     });
     let is_dark: Vec<bool> = measured.points.iter().map(|point| point.illuminance == 0.0).collect();
     let inside = enclosed::find(&compiled.world, &sensors, &is_dark);
-    let unit = if compiled.world.lumens().is_some() { "W/m^2" } else { "lux" };
     let groups =
-        Groups { sensors: &sensors, points: &measured.points, inside: &inside, unit, alone, grids: &args.grid };
+        Groups { kind, sensors: &sensors, points: &measured.points, inside: &inside, unit, alone, grids: &args.grid };
     match args.json {
         true => groups.print_json()?,
         false => groups.print_rows(),
@@ -306,7 +390,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         groups.print_summaries();
     }
     if let (Some(plan), Some((grid, points))) = (plan, groups.grids().next()) {
-        save_all(&[(&plan, printed::plan(grid, &points, up).into_bytes())])?;
+        save_all(&[(&plan, groups.plan(grid, &points, up, &args.levels).into_bytes())])?;
         print_written_to_error(&plan, args.quiet);
     }
     if !args.quiet {
@@ -325,7 +409,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         let message = "some lights (in mirrors or glass, on solids, or textured) are found only by BSDF sampling: the \
                        errors include the effect of one more sample of such a light; use more `--samples` or \
                        `--integrator photons`";
-        report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
+        report::note(&Diagnostic::warning(message).code("rare-light"));
     }
     Ok(())
 }

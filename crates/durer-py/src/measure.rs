@@ -4,7 +4,7 @@ use crate::work::watched;
 use crate::world::{Pairs, World, options};
 use durer::integrator::{Integrator, IntegratorContext};
 use durer::math::{LUMINANCE, Vec3};
-use durer::measure::{MeasureOptions, Measurement, Sensor, measure as measure_light};
+use durer::measure::{IlluminanceKind, MeasureOptions, Measurement, Sensor, measure as measure_light};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,17 +20,23 @@ type Light<'py> =
     (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, bool);
 
 /// Measures the light at `sensors`: points of shape (n, 3) and unit normals of shape (n, 3).
-/// `precision` is the number of samples, if it is not the default, and the error target.
+/// `kind` is the name of an illuminance. `precision` is the number of samples, if it is not the
+/// default, and the error target.
 #[pyfunction]
 pub fn measure<'py>(
     py: Python<'py>,
     world: &World,
     sensors: (PyReadonlyArray2<'py, f32>, PyReadonlyArray2<'py, f32>),
+    kind: &str,
     precision: (Option<u32>, Option<f64>),
     pairs: Pairs,
     watch: Option<Py<PyAny>>,
 ) -> PyResult<Light<'py>> {
     let ((points, normals), (samples, error)) = (sensors, precision);
+    let kind = IlluminanceKind::from_name(kind).ok_or_else(|| {
+        let names = IlluminanceKind::ALL.map(IlluminanceKind::name).join(", ");
+        PyValueError::new_err(format!("kind must be one of {names}, but is {kind:?}"))
+    })?;
     let options = options(&pairs)?;
     let job = options.resolve(&world.loaded).map_err(PyValueError::new_err)?;
     let vectors = |array: &PyReadonlyArray2<f32>| -> PyResult<Vec<Vec3>> {
@@ -40,7 +46,7 @@ pub fn measure<'py>(
     let sensors: Vec<Sensor> = sensors.map(|(point, normal)| Sensor { point, normal }).collect();
     let lumens = world.world.lumens().unwrap_or(LUMINANCE);
     let samples = samples.unwrap_or_else(|| MeasureOptions::default_samples(error));
-    let settings = MeasureOptions { samples, error, seed: job.seed, lumens };
+    let settings = MeasureOptions { kind, samples, error, seed: job.seed, lumens };
     let (cancel, done) = (AtomicBool::new(false), AtomicU64::new(0));
     let progress = || (done.load(Relaxed), PROGRESS_STEPS);
     let found = watched(py, options.threads, watch, (&cancel, &progress), || {

@@ -84,6 +84,10 @@ def test_measured_light_equals_the_closed_form():
     np.testing.assert_allclose(found.illuminance, 1000 * 2 / square**1.5, rtol=1e-5)
     assert found.irradiance.shape == (3, 2, 3) and found.samples.shape == (3, 2)
     assert 0 < found.uniformity < 1
+    sphere = lit.measure(points + (0, 1, 0), kind="spherical", samples=4096)
+    np.testing.assert_allclose(sphere.illuminance, 1000 / 4 / (square - 3), rtol=5e-3)
+    with pytest.raises(ValueError, match="planar, cylindrical, spherical"):
+        lit.measure(points, kind="round")
     with pytest.raises(ValueError, match="normals"):
         lit.measure(points, normals=(0, 0, 0))
     with pytest.raises(ValueError, match="error"):

@@ -1,7 +1,8 @@
 //! Illuminance and irradiance at points of a scene, with standard errors.
 
 use crate::integrator::{Integrate as _, Path};
-use durer_scene::math::{Color, Vec3};
+use durer_scene::bsdf::Frame;
+use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
 
@@ -19,9 +20,59 @@ pub struct Sensor {
     pub normal: Vec3,
 }
 
+/// Quantity that is measured at a sensor. Source: EN 12665.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IlluminanceKind {
+    /// Illuminance of a plane with the sensor's normal.
+    #[default]
+    Planar,
+    /// Illuminance of the lateral surface of a small cylinder whose axis is the sensor's normal. It
+    /// is the mean illuminance of all planes through the axis.
+    Cylindrical,
+    /// Illuminance of a small sphere, which is the mean illuminance of planes of all orientations.
+    Spherical,
+}
+
+impl IlluminanceKind {
+    /// All kinds.
+    pub const ALL: [IlluminanceKind; 3] = [Self::Planar, Self::Cylindrical, Self::Spherical];
+
+    /// Returns the name of the kind, in lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Planar => "planar",
+            Self::Cylindrical => "cylindrical",
+            Self::Spherical => "spherical",
+        }
+    }
+
+    /// Returns the kind with the given name.
+    pub fn from_name(name: &str) -> Option<IlluminanceKind> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Returns the unit normal of the plane that receives the light of a sample. The normals of all
+    /// samples follow an additive sequence, which is independent of the Sobol numbers of the paths.
+    ///
+    /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
+    fn plane(self, axis: Vec3, sample: u32) -> Vec3 {
+        let share = |step: f64| (f64::from(sample) * step).fract() as f32;
+        let (azimuth, z) = match self {
+            Self::Planar => return axis,
+            Self::Cylindrical => (share(0.618_033_988_749_894_9), 0.0),
+            Self::Spherical => (share(0.754_877_666_246_692_7), 1.0 - 2.0 * share(0.569_840_290_998_053_3)),
+        };
+        let (sin, cos) = fp::sin_cos_turn(azimuth);
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        Frame::around(axis).to_world(Vec3::new(radius * cos, radius * sin, z)).normalize()
+    }
+}
+
 /// Options of [`measure`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasureOptions {
+    /// Quantity to measure.
+    pub kind: IlluminanceKind,
     /// Samples per point; the maximum number with `error`.
     pub samples: u32,
     /// Relative standard error of the illuminance at which a point needs no more samples, for
@@ -137,7 +188,7 @@ pub fn measure(
     options: &MeasureOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Measurement {
-    let MeasureOptions { samples, error, seed, lumens } = *options;
+    let MeasureOptions { kind, samples, error, seed, lumens } = *options;
     let rare = f64::from(path.max_rare_contribution(|color| color.dot(lumens)));
     let mut sums = vec![Sums::default(); sensors.len()];
     let mut first = 0;
@@ -165,7 +216,8 @@ pub fn measure(
                     return;
                 }
                 let id = SampleId::new(seed, (number as u32, 0), sample);
-                sums.add(path.irradiance(sensor.point.as_dvec3(), sensor.normal, id, &mut ()), lumens);
+                let normal = kind.plane(sensor.normal, sample);
+                sums.add(path.irradiance(sensor.point.as_dvec3(), normal, id, &mut ()), lumens);
             }
         });
         first = end;

@@ -1,6 +1,7 @@
 //! Drawing of a luminaire's intensities in two vertical planes (polar diagram) as SVG.
 
-use crate::svg::{escape, round_step};
+use crate::svg::escape;
+use durer::film::false_color::round_step;
 use durer::light::PhotometricProfile;
 use durer::math::fp;
 use std::fmt::Write as _;

@@ -87,8 +87,7 @@ pub fn run(
     }
     let mut files = Vec::new();
     if let (Some(file), Some(grid)) = (&outputs.plan, points.grids().next()) {
-        let shown = args.weather.plan_shows.as_deref().unwrap_or("autonomy");
-        files.push((file, points.plan(&grid, shown, &options, up).into_bytes()));
+        files.push((file, points.plan(&grid, args, &options, up).into_bytes()));
     }
     if let Some(file) = &outputs.hours {
         files.push((file, points.hours(weather).into_bytes()));
@@ -165,12 +164,12 @@ impl<'a> Points<'a> {
         let Annual { occupied_hours, missing_hours, .. } = self.found;
         if occupied_hours == 0.0 {
             report::note(
-                &Diagnostic::warning("no row of the weather file is within the hours of use").code("NO_HOURS"),
+                &Diagnostic::warning("no row of the weather file is within the hours of use").code("no-hours"),
             );
         }
         if missing_hours > 0.0 {
             let message = format!("{missing_hours} occupied hours without irradiance in the weather file are left out");
-            report::note(&Diagnostic::warning(message).code("MISSING_HOURS"));
+            report::note(&Diagnostic::warning(message).code("missing-hours"));
         }
         enclosed::warn(self.sensors, &self.inside);
     }
@@ -226,8 +225,9 @@ impl<'a> Points<'a> {
         })
     }
 
-    /// Draws a plan of one figure. `shown` is a word of `--plan-shows`.
-    fn plan(&self, grid: &GridPoints, shown: &str, options: &AnnualOptions, up: Vec3) -> String {
+    /// Draws a plan of the figure that `--plan-shows` selects.
+    fn plan(&self, grid: &GridPoints, args: &MeasureArgs, options: &AnnualOptions, up: Vec3) -> String {
+        let shown = args.weather.plan_shows.as_deref().unwrap_or("autonomy");
         let target = options.thresholds.target;
         let (figure, unit, name): (fn(&AnnualFigures) -> f64, _, _) = match shown {
             "continuous" => {
@@ -248,7 +248,7 @@ impl<'a> Points<'a> {
         let values: Vec<f64> = grid.all.iter().map(value).collect();
         let mean = self.mean(&grid.outside, figure);
         let caption = format!("{name}, {} occupied hours: average {mean:.1} {unit}", self.found.occupied_hours);
-        plan::draw(grid.grid, &values, up, &Legend { unit, caption })
+        plan::draw(grid.grid, &values, up, &Legend { unit, caption, levels: &args.levels })
     }
 
     /// Returns a table with a row per row of the weather, and two columns per point.

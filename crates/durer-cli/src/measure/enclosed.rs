@@ -42,5 +42,5 @@ pub fn warn(sensors: &[Sensor], inside: &[bool]) {
     let (of, are) = (report::counted(sensors.len(), "point"), if enclosed == 1 { "is" } else { "are" });
     let first = printed::vector(first.point);
     let message = format!("{enclosed} of {of} {are} inside an object, where no light arrives; the first is {first}");
-    report::note(&Diagnostic::warning(message).code("INSIDE"));
+    report::note(&Diagnostic::warning(message).code("inside"));
 }

@@ -59,7 +59,7 @@ pub fn run(args: &MeasureArgs, compiled: &CompiledInput, path: &Path, up: Vec3, 
                 "{} without extent left out: only surfaces with emission have a luminance",
                 report::counted(count, "light")
             );
-            report::note(&Diagnostic::warning(message).code("LIGHT_WITHOUT_EXTENT"));
+            report::note(&Diagnostic::warning(message).code("light-without-extent"));
         }
     }
     Ok(())
@@ -86,7 +86,7 @@ fn as_json([eye, target]: &[Vec3; 2], glare: &Glare, names: &SceneNames) -> Valu
 
 /// Warns if the rating of an observer is undefined.
 fn warn([eye, _]: &[Vec3; 2], glare: &Glare, names: &SceneNames) {
-    let note = |message: String| report::note(&Diagnostic::warning(message).code("UGR_UNDEFINED"));
+    let note = |message: String| report::note(&Diagnostic::warning(message).code("ugr-undefined"));
     let eye = text_of(*eye);
     if glare.sources.is_empty() {
         note(format!("the observer at {eye} sees no luminaire, so there is no UGR"));

@@ -1,8 +1,8 @@
 //! Plan of a measured grid: false colours, isolux lines, axes and a scale, as SVG.
 
 use super::grid::Grid;
-use crate::svg::round_step;
 use durer::film::false_color::FalseColorScale;
+use durer::film::false_color::round_step;
 use durer::image::Transfer;
 use durer::math::Vec3;
 use std::fmt::Write as _;
@@ -17,6 +17,8 @@ const NO_VALUE: &str = "#bbb";
 const TICKS: f64 = 6.0;
 /// Width of the scale with its numbers, in SVG units.
 const SCALE: f64 = 110.0;
+/// Length from which an isolux line has a label, in SVG units.
+const LABELLED_LENGTH: f64 = 60.0;
 /// Approximate number of isolux lines.
 const LINES: f64 = 8.0;
 
@@ -53,12 +55,14 @@ impl Axis {
     }
 }
 
-/// Text on a plan.
-pub struct Legend {
+/// Text and lines on a plan.
+pub struct Legend<'a> {
     /// Unit of the values.
     pub unit: &'static str,
     /// Line below the plan.
     pub caption: String,
+    /// Values of the isolines; round values if empty.
+    pub levels: &'a [f64],
 }
 
 /// Draws a grid as seen from the side of its normal. The first edge points to the right. Points
@@ -100,17 +104,24 @@ pub fn draw(grid: &Grid, values: &[f64], up: Vec3, legend: &Legend) -> String {
         ));
     }
     let step = round_step(f64::from(scale.high) / LINES);
-    for level in (1..).map(|i| step * f64::from(i)).take_while(|level| *level < f64::from(scale.high)) {
+    let round = || (1..).map(|i| step * f64::from(i)).take_while(|level| *level < f64::from(scale.high)).collect();
+    let levels = if legend.levels.is_empty() { round() } else { legend.levels.to_vec() };
+    for level in levels {
         let segments = isolines(values, columns, level);
         if segments.is_empty() {
             continue;
         }
-        let mut path = String::new();
+        let (mut path, mut length) = (String::new(), 0.0);
         for [(a, b), (c, d)] in &segments {
             let ((x0, y0), (x1, y1)) = (place(a + 0.5, b + 0.5), place(c + 0.5, d + 0.5));
+            length += ((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0)).sqrt();
             write!(path, "M{x0:.2} {y0:.2}L{x1:.2} {y1:.2}").unwrap_or_default();
         }
         add(format_args!("<path fill=\"none\" stroke=\"#fff\" stroke-width=\"1.2\" d=\"{path}\"/>"));
+        // The label would hide a shorter line.
+        if length < LABELLED_LENGTH {
+            continue;
+        }
         let [(a, b), _] = segments[segments.len() / 2];
         let (x, y) = place(a + 0.5, b + 0.5);
         // The outline is a text of its own, because not every viewer draws it below the letters.

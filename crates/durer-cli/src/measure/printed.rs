@@ -1,20 +1,21 @@
 //! Prints measured values as CSV, as JSON, and as figures of grids.
 
+use super::LightUnit;
 use super::grid::Grid;
 use super::plan::{self, Legend};
 use crate::failure::Failure;
 use crate::terminal::{print_error_line, print_line};
 use durer::math::{Color, Vec3};
-use durer::measure::{Measured, Sensor, Uniformity};
+use durer::measure::{IlluminanceKind, Measured, Sensor, Uniformity};
 
 /// Measured values: first those of single points, and then those of each grid.
 pub struct Groups<'a> {
+    pub kind: IlluminanceKind,
     pub sensors: &'a [Sensor],
     pub points: &'a [Measured],
     /// For each point, true if it is inside an object and therefore not part of any figures.
     pub inside: &'a [bool],
-    /// Unit of the irradiance.
-    pub unit: &'static str,
+    pub unit: LightUnit,
     /// Number of single points.
     pub alone: usize,
     pub grids: &'a [Grid],
@@ -57,20 +58,22 @@ impl<'a> Groups<'a> {
 
     /// Prints the figures of each grid to standard error.
     pub fn print_summaries(&self) {
+        let unit = self.unit.suffix();
         for (number, (_, points)) in self.grids().enumerate() {
             let outside = outside(&points);
             let Some(figures) = Uniformity::of(&outside) else { continue };
             let Uniformity { min, average, max } = figures;
             let left_out = left_out(outside.len(), points.len());
             print_error_line(&format!(
-                "note: grid {}: average {average:.4}, minimum {min:.4}, maximum {max:.4} lux, U0 {:.3}, U1 {:.3}{left_out}",
+                "note: grid {}: {}average {average:.4}, minimum {min:.4}, maximum {max:.4}{unit}, U0 {:.3}, U1 {:.3}{left_out}",
                 number + 1,
+                self.quantity(),
                 figures.u0(),
                 figures.u1()
             ));
         }
-        if self.unit != "lux" {
-            print_error_line(&format!("note: illuminance is in lux, irradiance in {}", self.unit));
+        if self.unit == LightUnit::Watts {
+            print_error_line("note: illuminance is in lux, irradiance in W/m^2");
         }
     }
 
@@ -101,31 +104,44 @@ impl<'a> Groups<'a> {
                 "values": points.iter().map(|point| point.map(|point| point.illuminance)).collect::<Vec<_>>(),
             }))
         };
+        let [illuminance, irradiance] = self.unit.names();
         let value = serde_json::json!({
-            "units": { "illuminance": "lux", "irradiance": self.unit },
+            "quantity": format!("{} illuminance", self.kind.name()),
+            "units": { "illuminance": illuminance, "irradiance": irradiance },
             "points": self.sensors.iter().zip(self.points).zip(self.inside).map(point).collect::<Vec<_>>(),
             "grids": self.grids().filter_map(grid).collect::<Vec<_>>(),
         });
         print_line(&serde_json::to_string_pretty(&value)?);
         Ok(())
     }
+
+    /// Draws the plan of a grid with its figures, and with isolux lines at `levels` or, if there
+    /// are none, at round values.
+    pub fn plan(&self, grid: &Grid, points: &[Option<Measured>], up: Vec3, levels: &[f64]) -> String {
+        let values: Vec<f64> = points.iter().map(|point| point.map_or(f64::NAN, |point| point.illuminance)).collect();
+        let unit = self.unit.suffix();
+        let caption = Uniformity::of(&outside(points)).map_or(String::new(), |figures| {
+            let Uniformity { min, average, max } = figures;
+            let digits = if max < 100.0 { 3 } else { 1 };
+            let [u0, u1] = [figures.u0(), figures.u1()];
+            format!(
+                "{}average {average:.digits$}, minimum {min:.digits$}, maximum {max:.digits$}{unit}, U0 {u0:.2}, U1 {u1:.2}",
+                self.quantity()
+            )
+        });
+        plan::draw(grid, &values, up, &Legend { unit: unit.trim(), caption, levels })
+    }
+
+    /// Returns the name of a quantity that is not the usual one, as the start of a sentence.
+    fn quantity(&self) -> String {
+        match self.kind {
+            IlluminanceKind::Planar => String::new(),
+            kind => format!("{} illuminance: ", kind.name()),
+        }
+    }
 }
 
 /// Returns the values of the points that are not inside an object.
 fn outside(points: &[Option<Measured>]) -> Vec<Measured> {
     points.iter().copied().flatten().collect()
-}
-
-/// Draws the plan of a grid with its figures.
-pub fn plan(grid: &Grid, points: &[Option<Measured>], up: Vec3) -> String {
-    let values: Vec<f64> = points.iter().map(|point| point.map_or(f64::NAN, |point| point.illuminance)).collect();
-    let caption = Uniformity::of(&outside(points)).map_or(String::new(), |figures| {
-        let Uniformity { min, average, max } = figures;
-        let digits = if max < 100.0 { 3 } else { 1 };
-        let [u0, u1] = [figures.u0(), figures.u1()];
-        format!(
-            "average {average:.digits$}, minimum {min:.digits$}, maximum {max:.digits$} lux, U0 {u0:.2}, U1 {u1:.2}"
-        )
-    });
-    plan::draw(grid, &values, up, &Legend { unit: "lux", caption })
 }

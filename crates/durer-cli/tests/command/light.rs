@@ -100,6 +100,49 @@ fn grids_have_figures_lists_plans_and_error_targets() {
     folder.expect_failure(2, "measure lit.txt --at 0,0,0 --error 0", &["a share such as 1% or 0.01"]);
 }
 
+/// A light of 900 cd at a distance d gives 900 / d^2 on a plane that faces it. A cylinder receives
+/// sin(angle to its axis) / pi of that, and a sphere a quarter.
+#[test]
+fn cylindrical_and_spherical_illuminance_have_closed_forms() {
+    let folder = TestFolder::new();
+    folder.write(
+        "light.txt",
+        "Background { color 0 0 0 } Lights { PointLight { position 1 3 2 candela 900 } }
+Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } }
+Group { MaterialIndex 0 Rectangle { corner -9 0 -9 edge0 0 0 18 edge1 18 0 0 } }",
+    );
+    // The light is at (1, 1.8, 2), seen from the point.
+    let square: f64 = 1.0 + 1.8 * 1.8 + 4.0;
+    let facing = 900.0 / square;
+    let sin = |along: f64| (1.0 - along * along / square).sqrt();
+    let pi = std::f64::consts::PI;
+    for (kind, share) in [
+        ("planar", 1.8 / square.sqrt()),
+        ("cylindrical", sin(1.8) / pi),
+        ("spherical", 0.25),
+        ("cylindrical --normal 1,0,0", sin(1.0) / pi),
+    ] {
+        let measure = format!("measure light.txt --at 0,1.2,0 --samples 16384 --json --illuminance {kind}");
+        let json: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, &measure).out).unwrap();
+        let found = json["points"][0]["illuminance"].as_f64().unwrap();
+        assert!((found / (facing * share) - 1.0).abs() < 1e-3, "{kind}: {found} instead of {}", facing * share);
+    }
+    let grid = "measure light.txt --samples 256 --grid -2,1.2,-2:4,0,0:0,0,4:9x9 --illuminance cylindrical";
+    let output = folder.expect_exit(0, &format!("{grid} --plan faces.svg --levels 20,12.5"));
+    assert!(output.err.contains("note: grid 1: cylindrical illuminance: average"), "{}", output.err);
+    let plan = std::fs::read_to_string(folder.path("faces.svg")).unwrap();
+    assert_eq!(plan.matches("stroke-width=\"1.2\"").count(), 2, "{plan}");
+    assert!(plan.contains(">12.5</text>") && plan.contains("cylindrical illuminance: average"), "{plan}");
+    for (options, message) in [
+        ("--at 0,1,0 --illuminance round", "cylindrical"),
+        ("--at 0,0,0 --illuminance cylindrical --integrator photons", "needs --integrator path"),
+        ("--grid 0,0,0:1,0,0:0,0,1:2x2 --plan p.svg --levels 100,-3", "100,300,500"),
+        ("--at 0,0,0 --levels 100", "--plan"),
+    ] {
+        folder.expect_failure(2, &format!("measure light.txt {options}"), &[message]);
+    }
+}
+
 /// Grid points inside the ball are not part of the figures. In a closed room with a light, all
 /// points are inside the walls but receive light.
 #[test]
@@ -301,6 +344,15 @@ fn units_of_measured_light_are_told() {
     let plain = scene("color 0.5 0.5 0.5", "PointLight { position 0 4 0 color 9 9 9 }");
     assert!(plain.err.contains("1 light is without a photometric unit"), "{}", plain.err);
     assert!(plain.err.contains("the colour of the background counts as light"), "{}", plain.err);
+    let json = folder.expect_exit(0, "measure a.txt --at 0,0,0 --samples 64 --json").out;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["units"]["illuminance"], "the scene's own unit");
+    // A model has no light unless a studio is chosen.
+    folder.write("a.obj", "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\n");
+    let dark = folder.expect_exit(0, "measure a.obj --at 0,0,0 --samples 64");
+    assert!(dark.err.contains("nothing in the file emits light") && dark.err.contains("--studio soft"), "{}", dark.err);
+    let studio = folder.expect_exit(0, "measure a.obj --at 0,0,0 --samples 64 --studio soft");
+    assert!(!studio.err.contains("nothing") && !studio.out.contains(",0.000000,"), "{} {}", studio.out, studio.err);
     // A light with a unit needs no colour: 1000 lm are 79.58 cd, which are 4.974 lux at 4 m.
     let lamp = scene("color 0 0 0", "PointLight { position 0 4 0 lumens 1000 }");
     assert!(lamp.out.contains("4.97") && !lamp.err.contains("note"), "{} {}", lamp.out, lamp.err);

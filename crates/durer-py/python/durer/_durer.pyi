@@ -79,6 +79,7 @@ def read_mesh(path: os.PathLike[str], options: list[tuple[str, str]]) -> tuple[_
 def measure(
     world: World,
     sensors: tuple[_Floats, _Floats],
+    kind: str,
     precision: tuple[Optional[int], Optional[float]],
     options: list[tuple[str, str]],
     watch: _Watch,

@@ -16,13 +16,19 @@ pub struct FalseColorScale {
     pub logarithmic: bool,
 }
 
+/// Largest number of divisions of a legend.
+const LEGEND_ROWS: usize = 8;
+
 impl FalseColorScale {
-    /// Returns a linear scale from 0 to the 98th percentile of the positive values. If the maximum
-    /// were used, a visible emitter would leave almost no colours for the rest of the picture.
+    /// Returns a linear scale from 0 to the 98th percentile of the positive values, rounded up to a
+    /// number of the legend. If the maximum were used, a visible emitter would leave almost no
+    /// colours for the rest of the picture.
     pub fn from_values(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
         let high = all.get(all.len() * 49 / 50).copied().unwrap_or(1.0);
+        let step = round_step(f64::from(high) / LEGEND_ROWS as f64);
+        let high = (step * (f64::from(high) / step - 1e-6).ceil()) as f32;
         FalseColorScale { low: 0.0, high, logarithmic: false }
     }
 
@@ -59,18 +65,27 @@ impl FalseColorScale {
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
+    /// Returns the number of divisions of the legend. If the range has such divisions, their limits
+    /// are round numbers.
+    fn rows(&self) -> usize {
+        let range = f64::from(self.high - self.low);
+        let rows = range / round_step(range / LEGEND_ROWS as f64);
+        let is_round = !self.logarithmic && (rows - rows.round()).abs() < 1e-3 && rows >= 1.0;
+        if is_round { rows.round() as usize } else { LEGEND_ROWS }
+    }
+
     /// Draws a legend with numbers and a unit along the right edge of a picture, if the picture is
     /// large enough.
     pub fn draw_legend(&self, pixels: &mut [Color], width: usize, unit: &str) {
-        const ROWS: usize = 8;
+        let rows = self.rows();
         let height = pixels.len() / width.max(1);
-        let labels: Vec<String> = (0..=ROWS).map(|i| number(self.value(1.0 - i as f32 / ROWS as f32))).collect();
+        let labels: Vec<String> = (0..=rows).map(|i| number(self.value(1.0 - i as f32 / rows as f32))).collect();
         let longest = labels.iter().map(String::len).chain([unit.len()]).max().unwrap_or(0);
         // A glyph is three points wide and five points high, plus one point of spacing.
         let zoom = (height / 120).clamp(1, 8);
         let (bar, line) = (6 * zoom, 7 * zoom);
         let wide = bar + (4 * longest + 3) * zoom;
-        if width < 2 * wide || height < (ROWS + 3) * line {
+        if width < 2 * wide || height < (rows + 3) * line {
             return;
         }
         let (left, top, bottom) = (width - wide, 2 * line, height - line);
@@ -83,10 +98,10 @@ impl FalseColorScale {
         }
         let mut write = |text: &str, middle: usize| {
             for (i, letter) in text.chars().enumerate() {
-                let (rows, x) = (glyph(letter), left + bar + (2 + 4 * i) * zoom);
+                let (dots, x) = (glyph(letter), left + bar + (2 + 4 * i) * zoom);
                 for (row, column) in (0..5 * zoom).flat_map(|row| (0..3 * zoom).map(move |column| (row, column))) {
                     let y = (middle + row).saturating_sub(5 * zoom / 2);
-                    if rows[row / zoom] >> (2 - column / zoom) & 1 == 1 && y < height {
+                    if dots[row / zoom] >> (2 - column / zoom) & 1 == 1 && y < height {
                         pixels[y * width + x + column] = Color::ONE;
                     }
                 }
@@ -94,8 +109,25 @@ impl FalseColorScale {
         };
         write(unit, line / 2 + zoom);
         for (i, label) in labels.iter().enumerate() {
-            write(label, top + i * (bottom - top) / ROWS);
+            write(label, top + i * (bottom - top) / rows);
         }
+    }
+}
+
+/// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `step`; 1 if `step` is
+/// not positive.
+pub fn round_step(step: f64) -> f64 {
+    if step.is_nan() || step <= 0.0 {
+        return 1.0;
+    }
+    let mut power = 1e-12;
+    loop {
+        for digit in [1.0, 2.0, 5.0] {
+            if digit * power >= step * (1.0 - 1e-9) {
+                return digit * power;
+            }
+        }
+        power *= 10.0;
     }
 }
 
@@ -159,7 +191,30 @@ mod tests {
         let scale = FalseColorScale { low: 1.0, high: 1e4, logarithmic: true };
         assert!((scale.position(10.0) - 0.25).abs() < 1e-6 && (scale.position(100.0) - 0.5).abs() < 1e-6);
         assert_eq!(FalseColorScale::from_values([f32::NAN, 0.0].into_iter()).high, 1.0);
-        assert_eq!(FalseColorScale::from_values((1..=100).map(|i| i as f32)).high, 99.0);
+        assert_eq!(FalseColorScale::from_values((1..=100).map(|i| i as f32)).high, 100.0);
+    }
+
+    #[test]
+    fn steps_are_round() {
+        for (step, round) in [(250.0, 500.0), (0.3, 0.5), (1.0, 1.0), (2.1e6, 5e6), (0.0, 1.0), (f64::NAN, 1.0)] {
+            assert!((round_step(step) / round - 1.0).abs() < 1e-6, "{step}: {}", round_step(step));
+        }
+    }
+
+    #[test]
+    fn legends_have_round_numbers() {
+        for (value, high, rows) in
+            [(30.7, 35.0, 7), (250.0, 250.0, 5), (0.099, 0.1, 5), (1000.0, 1000.0, 5), (8.1, 10.0, 5)]
+        {
+            let scale = FalseColorScale::from_values([value].into_iter());
+            assert!(
+                (scale.high / high - 1.0).abs() < 1e-6 && scale.rows() == rows,
+                "{value}: {scale:?} {}",
+                scale.rows()
+            );
+        }
+        assert_eq!(FalseColorScale { low: 0.0, high: 5000.0, logarithmic: false }.rows(), 5);
+        assert_eq!(FalseColorScale { low: 1.0, high: 1e4, logarithmic: true }.rows(), 8);
     }
 
     #[test]
