@@ -6,7 +6,7 @@ use crate::export::export;
 use crate::protocol::{Event, PictureInfo, Setting};
 use crate::share::{ReceivedPart, Share};
 use durer::RenderJob;
-use durer::image::Layer;
+use durer::image::{Layer, LayerKind, Transfer};
 use durer::job::OutputSelection;
 use durer::render::{Control, Job, PixelRect, ProgressiveRender, RenderError, Sampling};
 
@@ -433,11 +433,13 @@ impl Viewer {
         hash: Option<String>,
     ) -> Result<PictureMessage, String> {
         let rendered = render.part().pictures().map_err(wrong)?;
-        let color = self.picture == "color";
         let clean = self.clean.as_ref().filter(|_| self.denoises && hash.is_some());
         let layer = clean.or(rendered.pictures.first()).ok_or("the job has no picture")?;
         let PixelRect { left, top, width, height } = render.part().job().window();
-        let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
+        let how = match layer.kind {
+            LayerKind::Color => display(self.stops, &self.tone),
+            LayerKind::Data => Transfer::Linear.into(),
+        };
         let head = PictureInfo {
             picture: self.picture.clone(),
             width,

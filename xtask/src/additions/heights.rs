@@ -11,4 +11,5 @@ pub(super) const AOV: Aov = Aov {
     picture: |value, _, _| value,
     relative: false,
     unit: None,
+    is_light: false,
 };

@@ -6,6 +6,7 @@
 
 use super::false_color::FalseColorScale;
 use super::{Film, luminance_of};
+use crate::integrator::separate_terms::SeparateTerms;
 use crate::world::{DisplayRules, SurfaceInteraction};
 use durer_bvh::TraversalStats;
 use durer_scene::dialect::{DepthPicture, NormalsPicture};
@@ -27,6 +28,8 @@ pub struct AovInput {
     /// Illuminance at the surface, in lux if the light of the scene is given in cd/m^2 or watts. It
     /// is 0 unless it was requested.
     pub illuminance: f32,
+    /// Terms of the colour by Whitted's method, which are 0 unless one of them was requested.
+    pub terms: SeparateTerms,
 }
 
 impl AovInput {
@@ -37,6 +40,14 @@ impl AovInput {
         albedo: Vec3::ZERO,
         counts: TraversalStats { rays: 0, nodes: 0, primitive_tests: 0 },
         illuminance: 0.0,
+        terms: SeparateTerms {
+            ambient: Vec3::ZERO,
+            diffuse: Vec3::ZERO,
+            highlight: Vec3::ZERO,
+            reflection: Vec3::ZERO,
+            refraction: Vec3::ZERO,
+            background: Vec3::ZERO,
+        },
     };
 }
 
@@ -117,6 +128,9 @@ pub struct Aov {
     /// Unit of the values in a false-colour picture. A scale with this unit is drawn next to the
     /// picture.
     pub unit: Option<&'static str>,
+    /// True if the values are light, which pictures show with the exposure and the transfer
+    /// function of the colour.
+    pub is_light: bool,
 }
 
 impl Aov {
@@ -151,6 +165,7 @@ pub static AOVS: &[Aov] = &[
         picture: depth_picture,
         relative: true,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "normals",
@@ -160,6 +175,7 @@ pub static AOVS: &[Aov] = &[
         // With one quirk, a pixel without a hit shows the normal of the previous hit.
         relative: true,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "geometric-normals",
@@ -168,6 +184,7 @@ pub static AOVS: &[Aov] = &[
         picture: normal_picture,
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "position",
@@ -180,6 +197,7 @@ pub static AOVS: &[Aov] = &[
         },
         relative: true,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "uv",
@@ -188,6 +206,7 @@ pub static AOVS: &[Aov] = &[
         picture: |uv, _, _| uv - uv.floor(),
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "barycentric",
@@ -196,6 +215,7 @@ pub static AOVS: &[Aov] = &[
         picture: |b, _, _| b,
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "albedo",
@@ -204,6 +224,7 @@ pub static AOVS: &[Aov] = &[
         picture: |albedo, _, _| albedo,
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "object",
@@ -212,6 +233,7 @@ pub static AOVS: &[Aov] = &[
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "material",
@@ -220,7 +242,22 @@ pub static AOVS: &[Aov] = &[
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
+        is_light: false,
     },
+    term(
+        "ambient",
+        "ambient term of the colour by Whitted's method, for the ray through the pixel's centre",
+        |input| input.terms.ambient,
+    ),
+    term("diffuse", "diffuse terms of all lights, with shadows, by Whitted's method", |input| input.terms.diffuse),
+    term("highlight", "highlights of all lights, with shadows, by Whitted's method", |input| input.terms.highlight),
+    term("reflection", "light along mirrored rays, by Whitted's method", |input| input.terms.reflection),
+    term("refraction", "light along refracted rays, by Whitted's method", |input| input.terms.refraction),
+    term(
+        "background",
+        "background where a ray hits nothing; it and the five terms before it add up to the colour",
+        |input| input.terms.background,
+    ),
     Aov {
         name: "luminance",
         doc: "luminance of the colour, in cd/m^2 if the scene's light is in cd/m^2 or in watts; as a picture, false colours with a scale",
@@ -228,6 +265,7 @@ pub static AOVS: &[Aov] = &[
         picture: light_picture,
         relative: true,
         unit: Some("cd/m2"),
+        is_light: false,
     },
     Aov {
         name: "illuminance",
@@ -236,6 +274,7 @@ pub static AOVS: &[Aov] = &[
         picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
         relative: true,
         unit: Some("lux"),
+        is_light: false,
     },
     Aov {
         name: "sample-count",
@@ -244,6 +283,7 @@ pub static AOVS: &[Aov] = &[
         picture: heat_picture,
         relative: true,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "variance",
@@ -252,6 +292,7 @@ pub static AOVS: &[Aov] = &[
         picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
         relative: false,
         unit: None,
+        is_light: false,
     },
     Aov {
         name: "cost",
@@ -260,8 +301,15 @@ pub static AOVS: &[Aov] = &[
         picture: heat_picture,
         relative: true,
         unit: None,
+        is_light: false,
     },
 ];
+
+/// Returns the entry for a term of the colour by Whitted's method.
+const fn term(name: &'static str, doc: &'static str, value: fn(&AovInput) -> Vec3) -> Aov {
+    let value = AovFunction::Ray(value);
+    Aov { name, doc, value, picture: |light, _, _| light, relative: false, unit: None, is_light: true }
+}
 
 /// Converts a normal to a colour as the dialect prescribes.
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {

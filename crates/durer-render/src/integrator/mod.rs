@@ -4,6 +4,7 @@
 pub mod ao;
 pub mod media;
 pub mod path;
+pub mod separate_terms;
 pub mod spawn;
 pub mod trace;
 pub mod whitted;

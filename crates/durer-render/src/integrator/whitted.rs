@@ -364,18 +364,16 @@ impl<'w> Whitted<'w> {
             // Skip the computation if the light is occluded.
             let dark = visible == Color::ZERO;
             let color = if dark { Color::ZERO } else { direct.color(part.phong, seen) };
-            if T::LISTENS {
-                let parent = queue.segment(point.segment).node;
-                let node = listener.begin(parent, || {
-                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, number, seen, visible));
-                    let (to_light, distance) = (seen.to_light, seen.distance);
-                    TermKind::Light { light: number, to_light, distance, share, shadow }
-                });
-                if !dark {
-                    direct.report(part.phong, *diffuse, node, listener);
-                }
-                listener.end(node, share * visible, seen.color, color);
+            let parent = queue.segment(point.segment).node;
+            let node = listener.begin(parent, || {
+                let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, number, seen, visible));
+                let (to_light, distance) = (seen.to_light, seen.distance);
+                TermKind::Light { light: number, to_light, distance, share, shadow }
+            });
+            if T::LISTENS && !dark {
+                direct.report(part.phong, *diffuse, node, listener);
             }
+            listener.end(node, share * visible, seen.color, color);
             point.color += share * visible * color;
         }
     }

@@ -5,6 +5,7 @@ use super::samples::{Cancelled, SampleCursor, SampleSource};
 use super::{Job, PixelRect, center_ray, raster};
 use crate::film::aov::{AovInput, brightness};
 use crate::integrator::Path;
+use crate::integrator::separate_terms::SeparateTerms;
 use crate::world::World;
 use durer_bvh::{RayCount, TraversalStats};
 use durer_scene::math::Vec3;
@@ -21,6 +22,7 @@ pub(super) fn trace(
     let raster = raster(world, job.width, job.height);
     let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
     let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
+    let terms_wanted = job.aovs.iter().any(|aov| aov.is_light);
     let path = Path::new(world, job.settings, job.method.path_options().unwrap_or_default());
     let sees_through = world.has_unseen() && job.method.path_options().is_some();
     let mut rays = RayCount::default();
@@ -54,8 +56,9 @@ pub(super) fn trace(
             }
             _ => 0.0,
         };
+        let terms = if terms_wanted { SeparateTerms::trace(&samples.whitted, &ray) } else { SeparateTerms::default() };
         rays.0 += counts.rays;
-        inputs.push(AovInput { covered: true, hit, albedo, counts, illuminance });
+        inputs.push(AovInput { covered: true, hit, albedo, counts, illuminance, terms });
     }
     samples.check()?;
     // Replace NaN and infinity with 0.

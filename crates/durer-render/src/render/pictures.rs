@@ -61,7 +61,8 @@ impl PartialRender {
             let coverage = crop_pixels(coverage, from, window);
             let layer = |pixels| -> Result<Layer, RenderError> {
                 let image = Image::from_pixels(window.width, window.height, crop_pixels(pixels, from, window))?;
-                Ok(Layer::data(aov.name, image).with_coverage(coverage.clone()))
+                let layer = if aov.is_light { Layer::color(aov.name, image) } else { Layer::data(aov.name, image) };
+                Ok(layer.with_coverage(coverage.clone()))
             };
             rendered.layers.push(layer(values)?);
             let mut shown = layer(pictures)?;

@@ -538,3 +538,20 @@ fn light_in_watts_is_converted_to_lumens() {
     }
     assert!(watts.iter().all(|layer| layer.iter().any(|pixel| pixel.x > 1.0)));
 }
+
+/// The terms of Whitted's method add up to the colour of the pixels' centres.
+#[test]
+fn terms_of_the_colour_add_up_to_the_colour() {
+    let terms: Vec<&Aov> = AOVS.iter().filter(|aov| aov.is_light).collect();
+    let count = terms.len();
+    let job = Job { sampling: Sampling::Center, aovs: terms, ..small() };
+    let rendered = all(&world(), &job).pictures().unwrap();
+    let mut has_light = vec![false; count];
+    for (i, color) in rendered.layers[0].image.pixels.iter().enumerate() {
+        let values: Vec<Vec3> = rendered.layers[1..].iter().map(|layer| layer.image.pixels[i]).collect();
+        let sum: Vec3 = values.iter().sum();
+        assert!((sum - *color).abs().max_element() < 1e-5, "{i}: {values:?} do not add up to {color}");
+        has_light.iter_mut().zip(&values).for_each(|(has_light, value)| *has_light |= *value != Vec3::ZERO);
+    }
+    assert!(has_light.iter().filter(|has_light| **has_light).count() >= 4, "{has_light:?}");
+}
