@@ -1,5 +1,6 @@
 //! Implements `durer explain`, which explains the colour of a pixel.
 
+mod crossings;
 mod page;
 mod ray_drawing;
 mod tree_drawing;
@@ -38,6 +39,7 @@ use std::sync::Arc;
   durer explain scene.txt --brightest --html why.html
   durer explain scene.txt --pixel 200,150 --depth 4 --svg tree.svg --rays rays.svg
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
+  durer explain model.stl --ray '0 1 5 0 0 -1' --crossings
 
 Pass the same options as to `durer render`, because the colour depends on them, except those of the files to write. With one
 sample per pixel, the ray through the pixel centre is explained.")]
@@ -67,6 +69,9 @@ pub struct ExplainArgs {
     /// Explain this ray instead of a pixel: origin and direction, of any length
     #[arg(long, value_name = "OX OY OZ DX DY DZ", num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
     pub ray: Option<Vec<f32>>,
+    /// List all surfaces that --ray crosses, instead of its colour
+    #[arg(long, requires = "ray", conflicts_with_all = ["html", "svg", "rays", "pixel", "brightest", "worst"])]
+    pub crossings: bool,
     /// Explain the brightest pixel
     #[arg(long, conflicts_with = "worst")]
     pub brightest: bool,
@@ -125,12 +130,15 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
     let view = ViewArgs { crop: args.crop, show: vec!["color".into()], zoom: None };
     let job = job(&args.job, Some(&view), &compiled.loaded, false)?;
+    let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
+    if let (Some(numbers), true) = (&args.ray, args.crossings) {
+        return crossings::print(&names, &given_ray(numbers)?, args.json);
+    }
     let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
         true => picture(args, &compiled, &job)?,
         false => (None, None),
     };
     let subject = subject(args, &compiled, &job, picture.as_ref(), counts.as_ref())?;
-    let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
     // Show a single tree because the rays of all samples of a pixel would hide each other.
     let sample = match &subject {
         Explained::Pixel(pixel) => match (args.sample, args.worst) {
@@ -170,17 +178,17 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         let drawn = ray_drawing::rays_svg(&compiled.world, &tree.root, args.from_above);
         written.push((destination, drawn.into_bytes()));
     }
-    if !written.is_empty() {
-        return output::save(&written, args.quiet);
+    // A page contains the tree.
+    if page_file.is_none() {
+        let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+        lines().iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
+        if let Explained::Pixel(pixel) = &subject
+            && job.method.is_stochastic()
+        {
+            pixel.firefly().iter().for_each(|sentence| print_line(&format!("  {sentence}")));
+        }
     }
-    let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    lines().iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
-    if let Explained::Pixel(pixel) = &subject
-        && job.method.is_stochastic()
-    {
-        pixel.firefly().iter().for_each(|sentence| print_line(&format!("  {sentence}")));
-    }
-    Ok(())
+    output::save(&written, args.quiet)
 }
 
 /// Renders the whole picture. With adaptive sampling, also returns the number of samples per pixel.
@@ -203,14 +211,7 @@ fn subject(
 ) -> Result<Explained, Failure> {
     let pixel = match (&args.ray, args.pixel, picture) {
         (Some(numbers), ..) => {
-            let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(invalid_input("--ray needs six numbers")) };
-            let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            // Normalize the direction, as for camera rays, so that `t` is a distance.
-            let unit = ray.dir.as_dvec3().try_normalize().filter(|_| ray.origin.is_finite());
-            let Some(unit) = unit else {
-                return Err(invalid_input("--ray needs finite numbers and a direction other than 0 0 0"));
-            };
-            let ray = Ray { dir: unit.as_vec3(), ..ray };
+            let ray = given_ray(numbers)?;
             let world = &compiled.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
             return light
@@ -243,6 +244,17 @@ fn subject(
         return Err(invalid_input(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
     }
     Ok(Explained::Pixel(explanation))
+}
+
+/// Returns the ray of `--ray`. Its direction is normalized, as for camera rays, so that `t` is a
+/// distance.
+fn given_ray(numbers: &[f32]) -> Result<Ray, Failure> {
+    let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(invalid_input("--ray needs six numbers")) };
+    let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+    match ray.dir.as_dvec3().try_normalize() {
+        Some(unit) if ray.origin.is_finite() => Ok(Ray { dir: unit.as_vec3(), ..ray }),
+        _ => Err(invalid_input("--ray needs finite numbers and a direction other than 0 0 0")),
+    }
 }
 
 /// Returns the number of samples of a pixel if it is known.

@@ -24,6 +24,31 @@ fn sum(node: &Value) -> [f32; 3] {
     std::array::from_fn(|i| total[i] * scale[i])
 }
 
+/// A ball inside a box, whose front face is that of another box.
+#[test]
+fn crossings_of_a_ray_are_all_listed() {
+    let folder = TestFolder::new();
+    folder.write(
+        "nested.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Lights { }
+Materials { PhongMaterial { diffuseColor 1 1 1 } }
+Group { Box { min -2 -2 -2 max 2 2 2 } Sphere { center 0 0 0 radius 1 } Box { min -2 -2 2 max 2 2 3 } }",
+    );
+    let crossings = "explain nested.txt --crossings --ray";
+    let text = folder.expect_exit(0, &format!("{crossings} 0.5 0.25 5 0 0 -2")).out;
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[0].starts_with("6 crossings along (0.5, 0.25, 5) + t (0, 0, -1)"), "{text}");
+    assert!(lines[2].starts_with("  t = 3: leaves Box") && lines[3].starts_with("  t = 3: enters Box"), "{text}");
+    assert!(lines[1].starts_with("  t = 2: enters Box") && lines[6].starts_with("  t = 7: leaves Box"), "{text}");
+    let json: Value =
+        serde_json::from_str(&folder.expect_exit(0, &format!("{crossings} 0.5 0.25 0 0 1 0 --json")).out).unwrap();
+    let places: Vec<f64> = json["crossings"].as_array().unwrap().iter().map(|row| row["t"].as_f64().unwrap()).collect();
+    assert!((places[0] - (0.75_f64.sqrt() - 0.25)).abs() < 1e-6 && places[1] == 1.75, "{json}");
+    assert!(json["count"] == 2 && json["crossings"][0]["enters"] == false, "{json}");
+    assert!(folder.expect_exit(0, &format!("{crossings} 9 9 9 1 0 0")).out.starts_with("0 crossings"));
+    folder.expect_failure(2, "explain nested.txt --pixel 3,3 --crossings", &["--crossings"]);
+}
+
 #[test]
 fn pixel_of_render_is_that_of_the_picture() {
     let folder = TestFolder::new();

@@ -22,7 +22,7 @@ use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::world::World;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
-pub use numbers::number;
+pub use numbers::{number, vector};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 pub use text::{ExplainOptions, SceneNames, TextLine, ray_text};

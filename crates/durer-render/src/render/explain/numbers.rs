@@ -15,7 +15,7 @@ pub fn number(x: f32) -> String {
 }
 
 /// Formats a vector.
-pub(super) fn vector(v: Vec3) -> String {
+pub fn vector(v: Vec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 

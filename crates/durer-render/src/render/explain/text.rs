@@ -492,7 +492,10 @@ fn struck_lines(hit: &HitRecord, names: &SceneNames) -> Vec<String> {
     let (object, t) = (names.short_object(hit.object), number(hit.t));
     let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
     if hit.barycentric != Vec3::ZERO {
-        lines.push(format!("triangle {}, barycentric {}", hit.part, vector(hit.barycentric)));
+        // See `inset` in `durer_scene::shape::triangle`.
+        let is_at_edge = hit.barycentric.min_element() < 1e-5;
+        let edge = if is_at_edge { "; the point is kept a few roundings away from the edge" } else { "" };
+        lines.push(format!("triangle {}, barycentric {}{edge}", hit.part, vector(hit.barycentric)));
     }
     if let Some(uv) = hit.uv {
         lines.push(format!("uv ({}, {})", number(uv.x), number(uv.y)));
