@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, Command};
 const TOPICS: &[(&str, &[&str])] = &[
     ("Picture", &["size", "crop", "show", "zoom", "background", "depth-range", "light-range", "light-log"]),
     ("Camera", &["view", "eye", "target", "fov", "camera", "view-file", "fit", "turned"]),
-    ("Model", &["up", "studio", "environment", "variant", "animation", "at"]),
+    ("Model", &["up", "studio", "environment", "environment-rotation", "add-ground", "variant", "animation", "at"]),
     ("Reading", &["dialect", "compat", "strict", "assets", "allow-outside", "memory"]),
     (
         "Light",

@@ -18,6 +18,17 @@ pub struct SceneDefaultsArgs {
     pub studio: Option<StudioLight>,
     #[arg(long, value_name = "FILE", help = doc("environment"))]
     pub environment: Option<PathBuf>,
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        value_parser = degrees,
+        allow_negative_numbers = true,
+        requires = "environment",
+        help = doc("environment-rotation")
+    )]
+    pub environment_rotation: Option<f32>,
+    #[arg(long, help = doc("add-ground"))]
+    pub add_ground: bool,
     #[arg(long, value_name = "FILE", conflicts_with = "view", help = doc("view-file"))]
     pub view_file: Option<PathBuf>,
     #[arg(long, value_name = "NAME", help = doc("camera"))]
@@ -124,10 +135,12 @@ impl SceneDefaultsArgs {
             fit: self.fit,
             orbit_degrees: self.turned,
             convert_only: false,
+            ground: self.add_ground,
             no_ground: false,
             own_light: false,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),
+            environment_rotation: self.environment_rotation,
             aspect: None,
         }
     }

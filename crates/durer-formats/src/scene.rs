@@ -10,7 +10,7 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
 use durer_scene::light::{Illuminate as _, Light};
-use durer_scene::math::Vec3;
+use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::defaults::ModelAxes;
 use durer_scene::scene::{Axis, Background, Group, Object, PictureBytes, Scene, Spanned, TextureImage};
 use durer_scene::source::SourceError;
@@ -107,7 +107,8 @@ pub fn read_model(format: &SceneFormat, input: &ReadInput, diagnostics: &mut Dia
     }
     if let Some(path) = &input.scene_defaults.environment {
         let (name, bytes) = read_option_file(input, path, diagnostics)?;
-        let surrounded = set_environment(&mut scene, &name, bytes, up, input.memory);
+        let rotation = input.scene_defaults.environment_rotation.unwrap_or(0.0);
+        let surrounded = set_environment(&mut scene, (&name, bytes), (up, rotation), input.memory);
         surrounded.map_err(|error| diagnostics.push(picture_error(&name, &error))).ok()?;
     }
     if !input.scene_defaults.convert_only {
@@ -176,13 +177,22 @@ fn one_mesh(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
 
 /// Replaces the background and the directional lights with an environment map, whose upper edge
 /// points in the direction `up`.
-fn set_environment(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
+fn set_environment(
+    scene: &mut Scene,
+    (name, bytes): (&str, Arc<[u8]>),
+    (up, rotation): (Axis, f32),
+    memory: u64,
+) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
     let near = |light: &Spanned<Light>| light.value.position().is_some();
     scene.lights.get_or_insert_default().retain(near);
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
     let sides = ModelAxes::new(up);
-    let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(rotation));
+    let turned = |dir: DVec3| {
+        let [x, y, z] = [sides.right, sides.up, sides.front].map(|side| dir.dot(side));
+        DVec3::new(x * cos + z * sin, y, z * cos - x * sin)
+    };
     // If a picture cannot be decoded, the error is reported when the scene is compiled.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
         let light = |dir: DVec3| panorama::nearest(&picture, turned(dir));
@@ -192,5 +202,6 @@ fn set_environment(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, me
     let picture = TextureImage { bytes: PictureBytes::Memory(name.to_string(), bytes), mapping: Mapping::default() };
     scene.assets.pictures.insert(name.to_string(), picture);
     scene.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
+    scene.background.environment_rotation = (rotation != 0.0).then_some(rotation);
     Ok(())
 }

@@ -341,6 +341,18 @@ fn environment_lights_a_model() {
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // The up axis determines the orientation of the environment.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
+    // A whole turn changes nothing, and a half turn is the same for both axes.
+    let turned = |degrees: u32, up: &str| {
+        hash(&format!("--environment panorama.hdr --environment-rotation {degrees} --up {up}"))
+    };
+    folder.write("pano.txt", format!("{view} Lights {{ }} Materials {{ PhongMaterial {{ diffuseColor 0 0 0 }} }} Group {{ MaterialIndex 0 Sphere {{ center 3 0 0 radius 1 }} }}"));
+    folder.expect_exit(0, "render pano.txt -o panorama.hdr --size 64x32 --samples 1 -q");
+    for up in ["y", "z"] {
+        assert_ne!(turned(90, up), turned(0, up), "{up}");
+        assert_eq!(turned(0, up), hash(&format!("--environment panorama.hdr --up {up}")));
+    }
+    folder.expect_failure(2, "render a.stl -o a.png --environment-rotation 90", &["--environment"]);
+    assert_ne!(hash("--environment sky.hdr --add-ground"), hash("--environment sky.hdr"));
     // A black environment is valid, but a note reports it.
     folder.write("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark =

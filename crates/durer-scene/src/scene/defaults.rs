@@ -4,7 +4,7 @@
 use super::extent::points;
 use super::{Background, Group, Material, Object, ObjectKind, Scene, Spanned};
 use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, Projection};
-use crate::light::{DirectionalLight, Light};
+use crate::light::{DirectionalLight, Illuminate as _, Light};
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec3, fp};
 use crate::shape::plane::Plane;
@@ -87,6 +87,8 @@ pub struct SceneDefaults {
     pub view_file: Option<PathBuf>,
     /// Environment map that lights the model instead of the default lights.
     pub environment: Option<PathBuf>,
+    /// Rotation of the environment map about the up axis in degrees, or `None` for 0.
+    pub environment_rotation: Option<f32>,
     /// True to move the model's own camera to a position from which the full model is visible.
     pub fit: bool,
     /// Angle in degrees by which the camera orbits the model, counter-clockwise as seen from above,
@@ -96,6 +98,8 @@ pub struct SceneDefaults {
     /// True to neither add nor replace anything, because the scene is being converted to another
     /// format.
     pub convert_only: bool,
+    /// True to add a ground below the model in any case, for example with an environment map.
+    pub ground: bool,
     /// True to add no ground below the model.
     pub no_ground: bool,
     /// True to use only the model's own light, even if it has none.
@@ -133,6 +137,15 @@ const ORBIT_STEPS: u32 = 48;
 /// Fraction of the width or height of the picture that a model fills.
 const FILL: f64 = 0.86;
 
+/// Maximum brightness of one indirect contribution under the studio lights, under which white is
+/// about 1. Otherwise, mirrored lights would make single bright pixels with few samples.
+const STUDIO_CLAMP: f32 = 4.0;
+/// Colour of the ground.
+const GROUND: Vec3 = Vec3::splat(0.5);
+/// Radiance of the grey surroundings of a model with its own lights, as a fraction of the radiance
+/// of a white surface that its lights illuminate.
+const SURROUNDINGS: f32 = 0.3;
+
 impl SceneDefaults {
     /// Adds no lights and no ground, and replaces requested lighting by none, for a program that
     /// reads only the meshes of a model.
@@ -166,11 +179,22 @@ impl SceneDefaults {
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed || fitted);
         }
-        // The background of a scene that has its own light is black, unless the file sets it.
-        let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        if self.ground {
+            add_ground(scene, &sides, GROUND);
+        }
+        // The background of a scene that has its own light is black, unless the file sets it. The
+        // lights of a model get surroundings as well, because what they miss would be black.
+        let has_lights = scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        let emits = scene.emits_light();
         let unset = scene.background == Background::default() && !scene.background_span.has_position();
-        if (emits || self.own_light) && unset {
-            scene.background.color = Vec3::ZERO;
+        if unset && (emits || has_lights || self.own_light) {
+            let adds_surroundings =
+                !(dark || emits || scene.is_lit || surrounded || self.own_light || studio.is_some());
+            let surroundings = if adds_surroundings { SURROUNDINGS * light_at_center(scene) } else { 0.0 };
+            scene.background.color = Vec3::splat(surroundings);
+            if surroundings > 0.0 {
+                scene.background.ambient_light = Vec3::splat(0.5 * surroundings);
+            }
         }
     }
 
@@ -196,8 +220,7 @@ impl SceneDefaults {
     /// Returns true if the camera of a model without lights may be moved so that the full model is
     /// visible: if it was not selected by name, is not part of an animation, and is not inside.
     fn may_fit(&self, scene: &Scene, eye: Vec3) -> bool {
-        let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
+        let [least, most] = bounds(scene);
         let eye = eye.as_dvec3();
         let is_inside = eye.cmpge(least).all() && eye.cmple(most).all();
         self.camera.is_none() && self.view_file.is_none() && self.animation_time.is_none() && !is_inside
@@ -278,30 +301,36 @@ impl SceneDefaults {
                 ],
                 Vec3::splat(0.25),
                 Vec3::splat(0.4),
-                Vec3::splat(0.5),
+                GROUND,
             ),
         };
         scene.lights = Some(lights);
+        scene.render_defaults.clamp = Some(STUDIO_CLAMP);
         scene.background.color = sky;
         scene.background.ambient_light = ambient;
-        if framed && !self.no_ground {
-            let mut lowest = f64::INFINITY;
-            points(scene, &mut |p| lowest = lowest.min(p.dot(sides.up)));
-            let material = PrincipledMaterial {
-                base_color: ground,
-                specular_weight: 0.0,
-                specular_roughness: 1.0,
-                ..PrincipledMaterial::default()
-            };
-            let plane = Plane { normal: sides.up.as_vec3(), offset: lowest as f32 };
-            if lowest.is_finite() {
-                let material = Some(scene.add_material(Material::Principled(Box::new(material))));
-                let node = ObjectKind::Primitive(plane.into());
-                let objects = &mut scene.root.get_or_insert_default().objects;
-                objects.push(Object { node, material, span: Span::default() });
-            }
+        if framed && !self.no_ground && !self.ground {
+            add_ground(scene, sides, ground);
         }
     }
+}
+
+/// Adds a matte ground plane of the given colour, which touches the lowest point of the scene.
+fn add_ground(scene: &mut Scene, sides: &ModelAxes, color: Vec3) {
+    let mut lowest = f64::INFINITY;
+    points(scene, &mut |p| lowest = lowest.min(p.dot(sides.up)));
+    if !lowest.is_finite() {
+        return;
+    }
+    let material = PrincipledMaterial {
+        base_color: color,
+        specular_weight: 0.0,
+        specular_roughness: 1.0,
+        ..PrincipledMaterial::default()
+    };
+    let plane = Plane { normal: sides.up.as_vec3(), offset: lowest as f32 };
+    let material = Some(scene.add_material(Material::Principled(Box::new(material))));
+    let node = ObjectKind::Primitive(plane.into());
+    scene.root.get_or_insert_default().objects.push(Object { node, material, span: Span::default() });
 }
 
 impl Scene {
@@ -312,11 +341,38 @@ impl Scene {
     }
 }
 
+/// Returns the radiance of a white surface in the centre of the scene that faces its brightest
+/// light.
+fn light_at_center(scene: &Scene) -> f32 {
+    let [least, most] = bounds(scene);
+    let middle = 0.5 * (least + most);
+    if !middle.is_finite() {
+        return 0.0;
+    }
+    let light = |light: &Spanned<Light>| {
+        let light = light.value.with_unit_color();
+        // The beam of the light may miss the centre.
+        let color = match light.inverse_square() {
+            Some((position, color)) => color / position.as_dvec3().distance_squared(middle) as f32,
+            None => light.illuminate(middle).color,
+        };
+        color.max_element()
+    };
+    let lights = scene.lights.iter().flatten().map(light);
+    lights.filter(|light| light.is_finite()).fold(0.0, f32::max)
+}
+
+/// Returns the least and the greatest coordinates of the scene, which are infinite without objects.
+fn bounds(scene: &Scene) -> [DVec3; 2] {
+    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    points(scene, &mut |p| bounds = [bounds[0].min(p), bounds[1].max(p)]);
+    bounds
+}
+
 /// Returns a point on the axis around which the camera orbits. The axis passes through the centre
 /// of the bounds.
 fn axis(scene: &Scene, sides: &ModelAxes) -> DVec3 {
-    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
+    let [least, most] = bounds(scene);
     let middle = 0.5 * (least + most);
     if middle.is_finite() { middle.reject_from(sides.up) } else { DVec3::ZERO }
 }

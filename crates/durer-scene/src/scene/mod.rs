@@ -248,6 +248,9 @@ pub struct RenderDefaults {
     pub samples: Option<u32>,
     /// Maximum number of scattering events after the first.
     pub bounces: Option<u32>,
+    /// Maximum brightness of one contribution to a path after more than one scattering event.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clamp: Option<f32>,
     /// Depth limit that allows no scattering, and its place in the file. Only pbrt and Mitsuba
     /// files can have such a limit; their readers make all materials black.
     #[serde(skip)]

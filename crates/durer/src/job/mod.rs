@@ -315,7 +315,11 @@ impl RenderJob {
         let render_defaults = scene.render_defaults;
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
-        let method = self.resolve_integrator(default_integrator(scene))?;
+        let mut method = self.resolve_integrator(default_integrator(scene))?;
+        let is_clamped = self.integrator_option_values.iter().any(|(option, _)| *option == "clamp");
+        if let (Some(clamp), false, Some(at)) = (render_defaults.clamp, is_clamped, option_index(&method, "clamp")) {
+            method.set(at, Value::Float(clamp));
+        }
         // Blur caused by an aperture and integrators that use random numbers need more samples than
         // antialiasing.
         let default_samples =

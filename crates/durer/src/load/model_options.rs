@@ -17,6 +17,7 @@ pub(super) fn refuse_for_scene(options: &SceneDefaults, diagnostics: &mut Diagno
         (options.up.is_some(), "--up", "a scene file has no up axis; turn its objects with `Transform`, or the camera"),
         (options.lighting.is_some(), "--studio", "change `Lights` and `Background` in the scene file"),
         (options.environment.is_some(), "--environment", "write `environment FILE` in the scene's `Background`"),
+        (options.ground, "--add-ground", "add a `Plane` to the scene file"),
         (options.variant.is_some(), "--variant", "a scene file has no variants; change `Materials` in the file"),
         (options.animation.is_some(), "--animation", "a scene file has no animation; write one file for each frame"),
         (options.animation_time.is_some(), "--at", "a scene file has no animation; write one file for each frame"),

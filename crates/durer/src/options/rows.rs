@@ -126,6 +126,18 @@ pub(super) const LOADING: &[Row] = &[
         "Environment map (.hdr, .exr) that lights the model; overrides the model's own sky and the studio lights",
     ),
     row(
+        "environment-rotation",
+        OptionForm::Number("DEGREES", f32::is_finite, NUMBER_EXPECTED),
+        |options, text| Ok(options.load.scene_defaults.environment_rotation = text.parse().ok()),
+        "Rotate the environment map about the up axis by this many degrees [default: 0]",
+    ),
+    row(
+        "add-ground",
+        OptionForm::Flag,
+        |options, text| Ok(options.load.scene_defaults.ground = flag(text)?),
+        "Add a grey ground below the model, for example with --environment",
+    ),
+    row(
         "view-file",
         OptionForm::Value("FILE"),
         |options, text| Ok(options.load.scene_defaults.view_file = Some(text.into())),

@@ -4,6 +4,7 @@ use super::super::Assets;
 use super::*;
 use crate::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use crate::describe::FileName;
+use crate::light::SpotLight;
 use crate::math::Vec2;
 use crate::math::random::Random;
 use crate::scene::MatrixOp;
@@ -88,6 +89,47 @@ fn up_in_a_model_is_up_in_its_picture() {
 }
 
 #[test]
+fn lights_of_a_model_get_dim_surroundings() {
+    let lit = |light: Light, dark: bool, scene_defaults: &SceneDefaults| {
+        let mut scene = scene(vec![Vec3::ZERO, Vec3::ONE]);
+        scene.lights = Some(vec![Spanned { value: light, span: Span::default() }]);
+        scene_defaults.complete(&mut scene, Axis::Y, dark);
+        assert_eq!(scene.lights.unwrap().len(), 1);
+        scene.background.color
+    };
+    let sun: Light = DirectionalLight { color: Vec3::new(0.2, 0.5, 0.1), ..DirectionalLight::default() }.into();
+    let automatic = SceneDefaults::default();
+    assert_eq!(lit(sun.clone(), false, &automatic), Vec3::splat(0.15));
+    // The light is two units away from the centre of the model, in the direction behind its beam.
+    let spot = SpotLight {
+        position: Vec3::new(3.5, -1.0, 2.75),
+        direction: Vec3::Z,
+        candela: Some(std::f32::consts::PI * 8.0),
+        ..SpotLight::default()
+    };
+    let found = lit(spot.into(), false, &automatic);
+    assert!((found - Vec3::splat(0.6)).length() < 1e-5, "{found}");
+    // Complete scenes, `--studio none` and measurements have only the light of the file.
+    let none = SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() };
+    let own = SceneDefaults { own_light: true, ..SceneDefaults::default() };
+    for (dark, options) in [(true, &automatic), (false, &none), (false, &own)] {
+        assert_eq!(lit(sun.clone(), dark, options), Vec3::ZERO);
+    }
+}
+
+#[test]
+fn ground_is_added_on_request() {
+    let environment = Some("sky.hdr".into());
+    let surrounded = SceneDefaults { environment, ..SceneDefaults::default() };
+    let objects =
+        |options: &SceneDefaults| staged(scene(vec![Vec3::ZERO, Vec3::ONE]), options).root.unwrap().objects.len();
+    assert_eq!(objects(&surrounded), 1);
+    assert_eq!(objects(&SceneDefaults { ground: true, ..surrounded }), 2);
+    // The studio has a ground of its own.
+    assert_eq!(objects(&SceneDefaults { ground: true, ..SceneDefaults::default() }), 2);
+}
+
+#[test]
 fn points_flat_and_empty_models_have_cameras() {
     for corners in [vec![], vec![Vec3::splat(5.0)], vec![Vec3::X, -Vec3::X], vec![Vec3::X, Vec3::Z, -Vec3::X]] {
         for view in VIEWS {
@@ -126,9 +168,9 @@ fn staging_adds_only_missing_parts() {
     let same = staged(complete.clone(), &SceneDefaults::default());
     assert_eq!((&same.camera, &same.lights), (&complete.camera, &complete.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
-    // The background of a scene with its own light is black. In a scene without any light, the
-    // background is not black, so that something is visible.
-    assert_eq!(same.background.color, Vec3::ZERO);
+    // A scene with its own light has dim surroundings. In a scene without any light, the background
+    // is brighter, so that something is visible.
+    assert_eq!(same.background.color, Vec3::splat(SURROUNDINGS));
     // A background that the file sets stays, even if it has the default colour.
     let mut written = complete.clone();
     written.background_span = Span { file: 0, start: 1, end: 2 };
