@@ -91,6 +91,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
             }
             report::note(&Diagnostic::warning(format!("left out {objects}: {why}")));
         }
+        note_up_axis(&loaded, &args.scene, &name);
         return output::save(&[(&destination, (format.write)(&mesh))], false);
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
@@ -116,6 +117,21 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
     save_with_files(args, destination, Written { bytes: text.into_bytes(), files }, &mut registry)
+}
+
+/// Notes that a mesh keeps its coordinates although readers of the written format expect another
+/// axis to point up.
+fn note_up_axis(loaded: &LoadedScene, from: &Path, to: &str) {
+    let (Some(up), Some(format)) = (loaded.scene.up, scene_format_for(to)) else { return };
+    if up != format.up {
+        let [up, other] = [up, format.up].map(|axis| format!("{axis:?}").to_lowercase());
+        let message = format!(
+            "the coordinates are those of {}, with {up} up, but programs read {} files with {other} up",
+            from.display(),
+            format.name
+        );
+        report::note(&Diagnostic::note(message).help(format!("render it with `--up {up}`")));
+    }
 }
 
 /// Returns the name of the folder for the files of a model, which is that of the output without its
@@ -145,7 +161,7 @@ fn text_in(dialect: Dialect, scene: &Scene, args: &ConvertArgs, warnings: &mut D
         // Only this dialect has comments.
         return format!("# A scene in the dialect of Dürer.\n{text}");
     }
-    let message = format!("nothing in the file tells its dialect, so it is read as {}", read.name());
+    let message = format!("without `--dialect`, the words of this file are read as {}", read.name());
     let help = format!("render it with `--dialect {}`", dialect.name());
     warnings.push(Diagnostic::warning(message).code("dialect").help(help));
     text
@@ -156,7 +172,7 @@ fn warn_of_foreign_words(text: &[u8], dialect: Dialect, warnings: &mut Diagnosti
     let (compat, mut found) = (dialect.rules().quirks, Diagnostics::default());
     course::read(text, 0, ReadOptions { dialect, strict: false, compat }, &mut found);
     let foreign = found.iter().filter(|diagnostic| diagnostic.code == "foreign-word");
-    let warn = |found: &Diagnostic| Diagnostic::warning(found.message.clone()).code("NO_COUNTERPART");
+    let warn = |found: &Diagnostic| Diagnostic::warning(found.message.clone()).code("no-counterpart");
     foreign.map(warn).for_each(|warning| warnings.push(warning));
 }
 

@@ -16,7 +16,6 @@ use durer::camera::{Projection, Raster};
 use durer::describe::DescribedKind;
 use durer::light::Light;
 use durer::render::{center_ray, raster};
-use durer::scene::Spanned;
 use durer::texture::almanac;
 use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
@@ -152,6 +151,10 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             .any(|object| object.to_world.is_some() && !matches!(object.geometry, Geometry::Mesh(_)));
         let note = if is_loose { " or less, because of rotated shapes" } else { "" };
         print_line(&format!("bounds     {} to {}{note}", bounds.min, bounds.max));
+        let size = bounds.max - bounds.min;
+        if size.is_finite() {
+            print_line(&format!("size       {} x {} x {}{note}", size.x, size.y, size.z));
+        }
     }
     print_line(&format!(
         "memory     {:.1} MiB: geometry and trees {:.1}, pictures {:.1}",
@@ -176,9 +179,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 /// Returns the lights of a world without those that a model gets because its file has none.
 fn own_lights<'w>(loaded: &LoadedScene, world: &'w World) -> &'w [Light] {
-    let is_added = |light: &Spanned<Light>| !light.span.has_position();
-    let lights = loaded.scene.lights.as_deref().unwrap_or_default();
-    if loaded.scene.up.is_some() && lights.iter().all(is_added) { &[] } else { world.lights() }
+    // The lights of the studio come with a limit of indirect light.
+    if loaded.scene.render_defaults.clamp.is_some() { &[] } else { world.lights() }
 }
 
 /// Counts the traversal steps of camera rays in a low-resolution picture.

@@ -99,8 +99,19 @@ impl ParsedInput {
     }
 
     /// Compiles the scene and prints the diagnostics.
-    pub fn compile(mut self, options: &LoadOptions, registry: &mut FileRegistry) -> Result<CompiledInput, Failure> {
+    pub fn compile(self, options: &LoadOptions, registry: &mut FileRegistry) -> Result<CompiledInput, Failure> {
+        self.compile_without(&[], options, registry)
+    }
+
+    /// Compiles the scene and prints the diagnostics, except those with the given codes.
+    pub fn compile_without(
+        mut self,
+        codes: &[&str],
+        options: &LoadOptions,
+        registry: &mut FileRegistry,
+    ) -> Result<CompiledInput, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
+        self.diagnostics.retain(|diagnostic| !codes.contains(&diagnostic.code));
         report::print(&self.files, &self.diagnostics, self.quiet);
         let world = world.ok_or(Failure::Input(None))?;
         self.loaded.files().iter().try_for_each(|path| registry.register_input(path))?;

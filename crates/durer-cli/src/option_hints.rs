@@ -50,10 +50,17 @@ const HINTS: &[(&[&str], &str, &str)] = &[
     (&["--hdri", "--hdr", "--env", "--envmap", "--skybox"], "environment", "use `--environment sky.hdr`"),
     (&["--light", "--lights", "--sun", "--lighting"], "studio", "use `--studio soft`, `sun` or `none`"),
     (
-        &["--ground", "--no-ground", "--floor"],
-        "studio",
-        "`--studio none` adds neither lights nor a ground, and `--background white` leaves out the ground",
+        &["--ground", "--no-ground", "--floor", "--plane"],
+        "add-ground",
+        "`--add-ground` adds a ground, `--studio none` adds neither lights nor a ground, and `--background white` leaves out the ground",
     ),
+    (
+        &["--rotate-environment", "--env-rotation", "--rotate-env", "--envmap-rotation", "--hdri-rotation"],
+        "environment-rotation",
+        "use `--environment-rotation 90`",
+    ),
+    (&["--cylindrical", "--spherical"], "kind", "use `--illuminance cylindrical` or `spherical`"),
+    (&["--intersections", "--all-hits", "--count"], "crossings", "use `--crossings`"),
     (&["--rotate", "--yaw", "--orbit", "--angle"], "turned", "use `--turned 45` to orbit the model by 45 degrees"),
     (
         &["--lens", "--aperture", "--dof", "--fstop", "--focus"],

@@ -12,6 +12,7 @@ use crate::terminal::{print_error_line, print_line};
 use crate::{check, device, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
+use durer::integrator::IntegratorKind;
 use durer::render::explain::explain;
 use durer::render::{
     Backdrop, BandedRender, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard,
@@ -141,7 +142,10 @@ pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchSt
         return Err(from_render_error(RenderError::Memory { needed, allowed }));
     }
     options.rays = Some(window.pixels().saturating_mul(u64::from(job.sampling.samples())));
-    let compiled = scene.compile(&options, &mut registry)?;
+    // Without lights, Whitted's method shows flat colours. Other pictures do not need them.
+    let shows_lights = job.color && job.method.name() == IntegratorKind::WHITTED.name();
+    let unneeded: &[&str] = if shows_lights { &[] } else { &["no-light"] };
+    let compiled = scene.compile_without(unneeded, &options, &mut registry)?;
     stages.end_stage("meshes, pictures and trees");
     if let Ok(mut files) = watched.files.lock() {
         *files = compiled.loaded.files();

@@ -12,7 +12,7 @@ pub(crate) struct SharedReport {
 }
 
 /// Code of warnings about content that cannot be rendered as its format specifies.
-pub(crate) const NO_COUNTERPART: &str = "NO_COUNTERPART";
+pub(crate) const NO_COUNTERPART: &str = "no-counterpart";
 
 impl SharedReport {
     /// Adds a diagnostic.

@@ -68,6 +68,11 @@ pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions
         );
         return Some(Diagnostic::error(format!("`{last}` is a table and no scene")).code("bad-file").help(help));
     }
+    if super::extension(last) == "pov" && extensions.is_empty() {
+        let message = format!("`{last}` is a scene of POV-Ray, which is not supported");
+        let help = "write it in the scene language: docs/coming/povray.md has the words of both";
+        return Some(Diagnostic::error(message).code("bad-file").help(help));
+    }
     let stl: (&[u8], &str, Option<&str>) = (b"solid", "STL", Some("stl"));
     let is_stl = super::stl::is_text(bytes);
     let obj: (&[u8], &str, Option<&str>) = (b"v", "Wavefront OBJ", Some("obj"));
@@ -139,6 +144,11 @@ mod tests {
                 messages(fbx, "b.fbx", &[]).unwrap().contains("import the file into Blender, and export it as glTF")
             );
         }
+        assert_eq!(
+            messages(b"camera { location <0, 1, -3> look_at 0 }\nsphere { 0, 1 }", "b.pov", &[]).unwrap(),
+            "`b.pov` is a scene of POV-Ray, which is not supported (write it in the scene language: \
+             docs/coming/povray.md has the words of both)"
+        );
         assert!(messages(b"ISO-10303-21;", "b.step", &[]).unwrap().contains("convert the file to glTF"));
         assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("rename the file to `b.usdc`"));
         assert_eq!(messages(b"PK\x03\x04", "b.usdz", &["usda", "usdc", "usdz", "usd"]), None);

@@ -103,7 +103,7 @@ pub(super) fn write_in(folder: &Path, name: &str, scene: &Scene) -> Vec<String> 
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, bytes).unwrap();
     }
-    assert!(diagnostics.iter().all(|found| found.code == "NO_COUNTERPART"), "{diagnostics:?}");
+    assert!(diagnostics.iter().all(|found| found.code == "no-counterpart"), "{diagnostics:?}");
     diagnostics.iter().map(|found| found.message.clone()).collect()
 }
 

@@ -61,6 +61,30 @@ const TOPICS: &[(&[&str], &str)] = &[
         "`durer measure` computes it at points and on grids, and `durer render --show illuminance` for each pixel",
     ),
     (
+        &[
+            "cylindrical illuminance",
+            "semicylindrical",
+            "cylindrical",
+            "spherical illuminance",
+            "scalar illuminance",
+            "modelling",
+        ],
+        "`durer measure --illuminance cylindrical` or `spherical`",
+    ),
+    (
+        &["passes", "render passes", "light passes", "terms", "diffuse term", "specular term", "ambient term", "aov"],
+        "`durer render --show ambient,diffuse,highlight,reflection,refraction` writes the terms of Whitted's method as pictures",
+    ),
+    (
+        &["crossings", "intersections", "all hits", "ray query", "inside", "point in mesh", "contains"],
+        "`durer explain --ray 'OX OY OZ DX DY DZ' --crossings` lists all surfaces along a ray; docs/engineer.md and \
+         docs/python.md have ray queries for programs",
+    ),
+    (
+        &["depth", "depth map", "depth buffer", "z buffer", "distance"],
+        "`durer render --show depth` writes the distance along the ray of each pixel, and 0 where it hits nothing",
+    ),
+    (
         &["cri", "color rendering", "colour rendering", "color rendering index"],
         "Dürer has no colour rendering index; `--color spectral` renders measured spectra of lights and surfaces",
     ),

@@ -289,6 +289,7 @@ fn options_without_effect_are_refused() {
     assert!(statistics.contains("2.0  tests and 0.0 nodes for each of 4096 camera rays"), "{statistics}");
     folder.expect_failure(2, "compare a.png -", &["reads files only"]);
     let statistics: serde_json::Value = serde_json::from_slice(&folder.bytes("a.json")).unwrap();
+    assert!(statistics["one_thread"]["rays"]["shadow"].as_u64().unwrap() > 0, "{statistics}");
     assert!(statistics["rays"].as_u64().unwrap() > 100 && statistics["seconds"]["rendering"].is_f64(), "{statistics}");
 }
 

@@ -226,7 +226,7 @@ impl Model<'_> {
         for (name, key, instead) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
             if let Some(texture) = extension.get(key) {
-                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out; {instead}"));
+                texture.warning("no-counterpart", format!("this texture of {name} is left out; {instead}"));
             }
         }
         let number = |at: &JsonRef, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);

@@ -94,7 +94,7 @@ impl Reader<'_> {
             other => {
                 let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
                 let message = format!("the light `{other}` has no counterpart: it is ignored");
-                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
+                let warning = Diagnostic::warning(message).code("no-counterpart").at(plugin.at);
                 return report.push(Diagnostic { help: suggest(other, known), ..warning });
             }
         };

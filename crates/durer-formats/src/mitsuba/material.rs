@@ -151,7 +151,7 @@ impl Reader<'_> {
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
-                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
+                let warning = Diagnostic::warning(message).code("no-counterpart").at(plugin.at);
                 self.report.push(Diagnostic { help: suggest(other, BSDFS), ..warning });
                 // Do not report the properties of this plugin as unused, because they were not
                 // read.

@@ -66,7 +66,7 @@ impl Reader<'_> {
             "bsplinecurve" | "linearcurve" => self.curves(plugin, to_world),
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is ignored");
-                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
+                let warning = Diagnostic::warning(message).code("no-counterpart").at(at);
                 return report.push(Diagnostic { help: suggest(other, SHAPES), ..warning });
             }
         };

@@ -79,7 +79,7 @@ impl Reader<'_> {
                 let message = format!("the texture `{other}` has no counterpart: the default value is used");
                 let known = ["bitmap", "checkerboard", "mesh_attribute"];
                 let known = known.into_iter().filter(|word| *word != other);
-                let warning = durer_diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
+                let warning = durer_diag::Diagnostic::warning(message).code("no-counterpart").at(texture.at);
                 self.report.push(durer_diag::Diagnostic { help: suggest(other, known), ..warning });
                 return Texture::Constant(default);
             }

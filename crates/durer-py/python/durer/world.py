@@ -27,6 +27,11 @@ PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 #: Images of single numbers, whose three channels are equal.
 _SCALAR_IMAGES = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
+#: Images of light, which are saved with the exposure and the transfer function.
+_LIGHT_IMAGES = {
+    "color", "denoised", "ambient", "diffuse", "highlight", "reflection", "refraction", "background",
+}
+
 
 class Pictures(dict[str, Floats]):
     """Rendered images by name, as float32 arrays with the top row first. `color` is linear light of
@@ -84,14 +89,14 @@ class Pictures(dict[str, Floats]):
         return _durer.encode(name, layers if _holds_all(name) else layers[:1], shown)
 
     def _encodable(self, name: str) -> list[tuple[str, Floats, Optional[list[float]], bool]]:
-        """Returns the name, values and coverage of each image, and true if it is a colour, in the
+        """Returns the name, values and coverage of each image, and true if it shows light, in the
         form that `_durer.encode` takes for a file of this name."""
         integers = Path(name).suffix.lower() not in (".pfm", ".hdr", ".exr")
         pictures = [*([] if self._denoised is None else [self._denoised]), *self.part._part.pictures(integers)]
         layers = []
         for own, width, height, values, alpha in pictures:
-            color = own in ("color", "denoised")
-            layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+            light = own in _LIGHT_IMAGES
+            layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), light))
         return layers
 
     def save(
@@ -574,13 +579,15 @@ class World:
         points: npt.ArrayLike,
         normals: npt.ArrayLike = (0.0, 1.0, 0.0),
         *,
+        kind: str = "planar",
         samples: Optional[int] = None,
         error: Optional[float] = None,
         progress: Progress = None,
         **options: Any,
     ) -> Illuminance:
         """Measures the light that arrives at points, of shape (..., 3), on the side of `normals`,
-        by path tracing, with the values of `durer measure`.
+        by path tracing, with the values of `durer measure`. `kind` is `planar`, `cylindrical` (the
+        mean illuminance of all planes through the normal) or `spherical`.
 
         `samples` is the number of samples of each point [default: 4096]. With `error`, for example
         0.01, a point needs no more samples once its relative standard error is that small, and
@@ -603,7 +610,7 @@ class World:
             raise ValueError(f"samples must be a whole number from 2 to {1 << 24}, but is {samples!r}")
         given = self._all({"integrator": "path", **options})
         rows = np.ascontiguousarray(at.reshape(-1, 3)), np.ascontiguousarray(towards / lengths, np.float32).reshape(-1, 3)
-        found = with_python_names(lambda: _durer.measure(self._world, rows, (samples, error), given, watch(progress)))
+        found = with_python_names(lambda: _durer.measure(self._world, rows, kind, (samples, error), given, watch(progress)))
         irradiance, lux, deviation, count, rare = found
         return Illuminance(
             lux.reshape(shape), deviation.reshape(shape), irradiance.reshape(*shape, 3), count.reshape(shape), rare
