@@ -26,6 +26,7 @@ use durer::render::explain::{
 use durer::render::{Control, Job};
 use durer::report::{self, Explained};
 use durer::sampler::SampleId;
+use std::cell::LazyCell;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -155,17 +156,17 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let max_depth = args.depth.map_or(usize::MAX, |depth| depth as usize);
     let detail = ExplainOptions { min_share: (args.min / 100.0) as f32, max_depth, transfer };
-    let lines = || match &subject {
+    let lines = LazyCell::new(|| match &subject {
         Explained::Ray(light) => ray_text(light, &names, &detail),
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
-    };
+    });
     let mut written = Vec::new();
     if let (Some(destination), Some(picture)) = (&page_file, &picture) {
         let page = page::page(&args.scene, &compiled, &job, &subject, sample, picture, transfer)?;
         written.push((destination, page.into_bytes()));
     }
     if let Some(destination) = &drawing_file {
-        written.push((destination, tree_drawing::tree_svg(&lines(), transfer).into_bytes()));
+        written.push((destination, tree_drawing::tree_svg(&lines, transfer).into_bytes()));
     }
     if let Some(destination) = &rays_file {
         let tree = match &subject {
@@ -181,7 +182,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     // A page contains the tree.
     if page_file.is_none() {
         let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-        lines().iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
+        lines.iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
         if let Explained::Pixel(pixel) = &subject
             && job.method.is_stochastic()
         {

@@ -179,8 +179,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 /// Returns the lights of a world without those that a model gets because its file has none.
 fn own_lights<'w>(loaded: &LoadedScene, world: &'w World) -> &'w [Light] {
-    // The lights of the studio come with a limit of indirect light.
-    if loaded.scene.render_defaults.clamp.is_some() { &[] } else { world.lights() }
+    if loaded.scene.has_studio() { &[] } else { world.lights() }
 }
 
 /// Counts the traversal steps of camera rays in a low-resolution picture.

@@ -342,6 +342,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.create(context) else {
         return Err(invalid_input("only path tracing can measure illuminance: set --integrator path or photons"));
     };
+    let kind = args.kind.unwrap_or_default();
     if !args.observers.is_empty() {
         if path.photons.is_some() {
             return Err(invalid_input("--ugr needs --integrator path"));
@@ -352,7 +353,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         if path.photons.is_some() {
             return Err(invalid_input("the daylight of a year needs --integrator path"));
         }
-        if args.kind.is_some_and(|kind| kind != IlluminanceKind::Planar) {
+        if kind != IlluminanceKind::Planar {
             return Err(invalid_input("the daylight of a year is measured on planes; --sky-hour measures one hour"));
         }
         let outputs = annual::Outputs { plan, hours };
@@ -360,7 +361,6 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             annual::run(args, &path, (weather, year), (&sensors, alone), up, &outputs)
         });
     }
-    let kind = args.kind.unwrap_or_default();
     if path.photons.is_some() && kind != IlluminanceKind::Planar {
         return Err(invalid_input("photons are stored on surfaces: a cylinder or a sphere needs --integrator path"));
     }

@@ -4,6 +4,7 @@
 //! The source reads only files below a few allowed folders, and only up to a total number of bytes.
 
 use crate::files::percent_decoded;
+use crate::mesh_format_for;
 use durer_diag::did_you_mean;
 use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp};
 use std::collections::BTreeMap;
@@ -172,6 +173,7 @@ impl FolderSource {
                 path.ancestors().find(|part| part.parent().is_some_and(|folder| or_current(folder).is_dir()))?;
             let folder = or_current(wrong.parent()?).canonicalize().ok().filter(|folder| self.allows(folder))?;
             // A mesh cannot replace a picture, or the reverse.
+            let is_mesh = |path: &Path| mesh_format_for(&path.to_string_lossy()).is_some();
             let is_fitting = |entry: &fs::DirEntry| match wrong == path {
                 true => is_mesh(&entry.path()) == is_mesh(path),
                 false => entry.path().is_dir(),
@@ -245,12 +247,6 @@ fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     }
     let candidate = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
     candidate.is_file().then_some(candidate)
-}
-
-/// Returns true if the name of a file ends like that of a mesh.
-fn is_mesh(path: &Path) -> bool {
-    let end = path.extension().unwrap_or_default().to_ascii_lowercase();
-    ["obj", "ply", "stl", "off"].iter().any(|mesh| end == *mesh)
 }
 
 /// Returns the folder, or `.` in place of an empty path.

@@ -2,6 +2,7 @@
 
 use crate::folder::FolderSource;
 use crate::scene::{ReadInput, WriteContext, find_scene_format, read_model};
+use crate::shared_report::NO_COUNTERPART;
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_scene::dialect::MeshNormals;
@@ -103,7 +104,7 @@ pub(super) fn write_in(folder: &Path, name: &str, scene: &Scene) -> Vec<String> 
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, bytes).unwrap();
     }
-    assert!(diagnostics.iter().all(|found| found.code == "no-counterpart"), "{diagnostics:?}");
+    assert!(diagnostics.iter().all(|found| found.code == NO_COUNTERPART), "{diagnostics:?}");
     diagnostics.iter().map(|found| found.message.clone()).collect()
 }
 

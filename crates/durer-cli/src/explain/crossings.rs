@@ -3,27 +3,15 @@
 use crate::failure::Failure;
 use crate::report::counted;
 use crate::terminal::print_line;
-use durer::math::{Ray, Ray64};
+use durer::math::Ray;
 use durer::render::explain::{SceneNames, number, vector};
 use durer::world::{Hit, SurfaceInteraction, World};
 
 /// Returns all crossings of a ray with the surfaces there, sorted by `t`. Hits of one object with
-/// the same `t` count once. Where objects touch, one is left before the other is entered.
+/// the same `t` count once. Where two objects touch, the ray leaves one before it enters the other.
 fn crossings(world: &World, ray: &Ray) -> Vec<(Hit, SurfaceInteraction)> {
-    let ray = Ray64::from(ray);
-    let mut hits = Vec::new();
-    for object in 0..world.objects().len() as u32 {
-        let mut rest = ray;
-        while let Some(hit) = world.hit_of(object, &rest) {
-            // With the rules of some years, a ray also hits at the start of its interval.
-            let is_new = hits.last().is_none_or(|last: &Hit| last.object != object || hit.t > last.t);
-            rest.rounded.t_min = if is_new { hit.t } else { rest.rounded.t_min.next_up() };
-            if is_new {
-                hits.push(hit);
-            }
-        }
-    }
-    let mut crossings: Vec<_> = hits.into_iter().map(|hit| (hit, world.interaction(ray, hit))).collect();
+    let hits = (0..world.objects().len() as u32).flat_map(|object| world.all_hits_of(object, ray));
+    let mut crossings: Vec<_> = hits.map(|hit| (hit, world.interaction(ray, hit))).collect();
     crossings.sort_by(|(a, at_a), (b, at_b)| a.t.total_cmp(&b.t).then(at_b.inside().cmp(&at_a.inside())));
     crossings
 }

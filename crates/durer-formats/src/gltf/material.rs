@@ -5,6 +5,7 @@
 
 use super::Model;
 use super::json::JsonRef;
+use crate::shared_report::NO_COUNTERPART;
 use durer_scene::bsdf::layers::opaque_ior;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
@@ -226,7 +227,7 @@ impl Model<'_> {
         for (name, key, instead) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
             if let Some(texture) = extension.get(key) {
-                texture.warning("no-counterpart", format!("this texture of {name} is left out; {instead}"));
+                texture.warning(NO_COUNTERPART, format!("this texture of {name} is left out; {instead}"));
             }
         }
         let number = |at: &JsonRef, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);

@@ -6,6 +6,7 @@
 use super::plugin::Plugin;
 use super::state::Reader;
 use crate::report::range_text;
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::MAX_PIXELS;
@@ -60,7 +61,7 @@ impl Reader<'_> {
             }
             other => {
                 let what = format!("the sensor `{other}` has no counterpart: a camera that frames the scene is used");
-                let warning = Diagnostic::warning(what).code("no-counterpart").at(sensor.at);
+                let warning = Diagnostic::warning(what).code(NO_COUNTERPART).at(sensor.at);
                 report.push(Diagnostic { help: suggest(other, SENSORS), ..warning });
                 None
             }
@@ -258,7 +259,7 @@ impl Reader<'_> {
             other => {
                 let what = format!("the integrator `{other}` has no counterpart: path tracing is used");
                 let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
-                let note = Diagnostic::note(what).code("no-counterpart").at(plugin.at);
+                let note = Diagnostic::note(what).code(NO_COUNTERPART).at(plugin.at);
                 report.push(Diagnostic { help: suggest(other, known), ..note });
                 plugin.properties.iter().for_each(|property| property.used.set(true));
             }

@@ -10,6 +10,7 @@ use super::texture::Texture;
 use crate::panorama::{self, bilinear};
 use crate::pictures::picture_error;
 use crate::profile_lights::{Axes, ProfileLight, steps};
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::{self as image, Image};
@@ -94,7 +95,7 @@ impl Reader<'_> {
             other => {
                 let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
                 let message = format!("the light `{other}` has no counterpart: it is ignored");
-                let warning = Diagnostic::warning(message).code("no-counterpart").at(plugin.at);
+                let warning = Diagnostic::warning(message).code(NO_COUNTERPART).at(plugin.at);
                 return report.push(Diagnostic { help: suggest(other, known), ..warning });
             }
         };

@@ -10,6 +10,7 @@ use super::state::Reader;
 use super::texture::{Texture, is_file};
 use crate::medium::Medium;
 use crate::pictures::asset;
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_image::decode_srgb;
@@ -151,7 +152,7 @@ impl Reader<'_> {
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
-                let warning = Diagnostic::warning(message).code("no-counterpart").at(plugin.at);
+                let warning = Diagnostic::warning(message).code(NO_COUNTERPART).at(plugin.at);
                 self.report.push(Diagnostic { help: suggest(other, BSDFS), ..warning });
                 // Do not report the properties of this plugin as unused, because they were not
                 // read.

@@ -10,6 +10,7 @@ use super::tessellate;
 use super::transform::frame;
 use crate::files::mesh_file;
 use crate::medium::Medium;
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use crate::smooth::smoothed;
 use durer_diag::{Diagnostic, Span};
@@ -66,7 +67,7 @@ impl Reader<'_> {
             "bsplinecurve" | "linearcurve" => self.curves(plugin, to_world),
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is ignored");
-                let warning = Diagnostic::warning(message).code("no-counterpart").at(at);
+                let warning = Diagnostic::warning(message).code(NO_COUNTERPART).at(at);
                 return report.push(Diagnostic { help: suggest(other, SHAPES), ..warning });
             }
         };

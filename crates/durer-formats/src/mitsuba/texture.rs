@@ -3,6 +3,7 @@
 use super::plugin::{Plugin, Property};
 use super::state::Reader;
 use crate::pictures::{asset, checkerboard};
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_image::{decode_linear, decode_srgb};
@@ -79,7 +80,7 @@ impl Reader<'_> {
                 let message = format!("the texture `{other}` has no counterpart: the default value is used");
                 let known = ["bitmap", "checkerboard", "mesh_attribute"];
                 let known = known.into_iter().filter(|word| *word != other);
-                let warning = durer_diag::Diagnostic::warning(message).code("no-counterpart").at(texture.at);
+                let warning = durer_diag::Diagnostic::warning(message).code(NO_COUNTERPART).at(texture.at);
                 self.report.push(durer_diag::Diagnostic { help: suggest(other, known), ..warning });
                 return Texture::Constant(default);
             }

@@ -3,6 +3,7 @@
 use super::language::Language;
 use super::params::Params;
 use super::state::{DeferredDirective, Reader};
+use crate::shared_report::NO_COUNTERPART;
 use crate::shared_report::suggest;
 use durer_image::MAX_PIXELS;
 use durer_scene::camera::{
@@ -316,7 +317,7 @@ impl Reader<'_> {
             self.report.error_with_help(directive.at, format!("unknown integrator `{}`", directive.kind), help);
         } else if !directive.kind.ends_with("path") {
             let what = format!("the integrator `{}` has no counterpart: path tracing is used", directive.kind);
-            self.report.push(durer_diag::Diagnostic::note(what).code("no-counterpart").at(directive.at));
+            self.report.push(durer_diag::Diagnostic::note(what).code(NO_COUNTERPART).at(directive.at));
         }
         match params.integer("maxdepth").unwrap_or(5) {
             depth @ 1..=1_000_000 => self.scene.render_defaults.bounces = Some(depth as u32 - 1),

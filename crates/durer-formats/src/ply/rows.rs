@@ -182,8 +182,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                 let [r, g, b, alpha] = color;
                 let color = [r, g, b].map(|share| decode_srgb((share * 255.0 + 0.5) as u8));
                 // Faces of an earlier element without colours are white.
-                let first = self.face_colors.len().max(count);
-                self.face_colors.resize(first, [1.0; 4]);
+                self.face_colors.resize(count, [1.0; 4]);
                 self.face_colors.resize(self.mesh.triangles.len(), [color[0], color[1], color[2], alpha]);
             }
         }

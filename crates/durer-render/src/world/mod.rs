@@ -400,18 +400,12 @@ impl World {
     /// The official programs of some years also return hits at the start of the interval. Such a
     /// hit is not included twice, since the iteration would never end otherwise.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
-        let mut rest = ray.into();
-        let mut last: Option<f32> = None;
-        std::iter::from_fn(move || {
-            let mut hit = self.closest(&rest, &mut ())?;
-            if let Some(last) = last.filter(|last| hit.t <= *last) {
-                rest.rounded.t_min = last.next_up();
-                hit = self.closest(&rest, &mut ()).filter(|hit| hit.t > last)?;
-            }
-            rest.rounded.t_min = hit.t;
-            last = Some(hit.t);
-            Some(hit)
-        })
+        successive_hits(ray.into(), |rest| self.closest(rest, &mut ()))
+    }
+
+    /// Iterates over all hits on one object, as if there were no others. See [`World::all_hits`].
+    pub fn all_hits_of(&self, object: u32, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
+        successive_hits(ray.into(), move |rest| self.hit_of(object, rest))
     }
 
     /// Iterates over the objects that the ray hits in its interval, in scene order, with the first
@@ -496,6 +490,22 @@ impl World {
     pub fn accel(&self) -> &Accel {
         &self.accel
     }
+}
+
+/// Iterates over the hits that `next` finds, each in the rest of the interval behind the previous
+/// one.
+fn successive_hits(mut rest: Ray64, next: impl Fn(&Ray64) -> Option<Hit>) -> impl Iterator<Item = Hit> {
+    let mut last: Option<f32> = None;
+    std::iter::from_fn(move || {
+        let mut hit = next(&rest)?;
+        if let Some(last) = last.filter(|last| hit.t <= *last) {
+            rest.rounded.t_min = last.next_up();
+            hit = next(&rest).filter(|hit| hit.t > last)?;
+        }
+        rest.rounded.t_min = hit.t;
+        last = Some(hit.t);
+        Some(hit)
+    })
 }
 
 #[cfg(test)]

@@ -342,6 +342,11 @@ impl Scene {
         })
     }
 
+    /// True if the lights of a studio were added to the scene. Only they come with a clamp.
+    pub fn has_studio(&self) -> bool {
+        self.render_defaults.clamp.is_some()
+    }
+
     /// True if a surface, an environment map or the sun emits light.
     pub fn emits_light(&self) -> bool {
         let emits = |material: &Spanned<Material>| match &material.value {

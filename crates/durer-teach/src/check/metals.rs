@@ -25,7 +25,7 @@ pub(super) fn metal_by_default(scene_probe: &SceneProbe) -> Vec<Finding> {
     let is_gltf = scene_probe.model_format().is_some_and(|format| format.name == "glTF");
     let surroundings = if world.is_dark() { Color::ZERO } else { world.background() };
     // The lights of the studio light metals well.
-    let has_studio = scene_probe.input.scene.render_defaults.clamp.is_some();
+    let has_studio = scene_probe.input.scene.has_studio();
     if !is_gltf || !scene_probe.is_physical() || world.environment().is_some() || has_studio {
         return Vec::new();
     }

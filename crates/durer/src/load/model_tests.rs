@@ -231,7 +231,7 @@ fn gltf_errors_name_the_place_and_the_fault() {
         ("\"mesh\": 0 }", "\"mesh\": 0, \"children\": [0] }", "NODE_LOOP: /nodes/0"),
         ("\"byteLength\": 48 }", "\"byteLength\": 480 }", "BUFFER_VIEW_TOO_LONG: /bufferViews/0/byteLength"),
         ("\"asset\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
-        ("[0] }]", "[0] }", "invalid-json"),
+        ("[0] }]", "[0] }", "INVALID_JSON"),
     ] {
         // The size of an accessor without a buffer, whose elements are all zero, is also limited.
         let to = if to.is_empty() { "\"normalized\": false, " } else { to };
