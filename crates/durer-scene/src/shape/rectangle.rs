@@ -45,7 +45,8 @@ impl Rectangle {
     fn shares(&self, point: DVec3) -> [f64; 2] {
         let [e, f] = self.edges();
         let (n, q) = (e.cross(f), point - self.corner.as_dvec3());
-        [q.cross(f).dot(n) / n.length_squared(), e.cross(q).dot(n) / n.length_squared()]
+        let n2 = n.length_squared();
+        [q.cross(f).dot(n) / n2, e.cross(q).dot(n) / n2]
     }
 }
 
@@ -81,7 +82,7 @@ impl Shape for Rectangle {
         let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
         let error = gamma(2) * (self.corner.abs() + self.edge0.abs() + self.edge1.abs()).max_element();
         let [u, v] = self.shares(point);
-        let [u, v] = [(u, e), (v, f)].map(|(x, edge)| inset(x, 1.0, error / edge.length() as f32));
+        let (u, v) = (inset(u, 1.0, error / e.length() as f32), inset(v, 1.0, error / f.length() as f32));
         let floor = 1e-14 * (corner.abs() + e.abs() + f.abs()).max_element();
         SurfacePoint::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
     }

@@ -120,7 +120,7 @@ impl Path<'_> {
             return self.resample_environment(choice, vertex);
         }
         let emitters = self.world.emitters();
-        let at = |u| emitters.sample(self.world, choice, vertex.receiver.point, u);
+        let at = |u| emitters.sample(self.world, choice, &vertex.receiver, u);
         let u = vertex.random(Dimension::LightPoint);
         let light = match (at(u)?, self.options.direct) {
             (any, DirectSampling::Center) => at(emitters.center_sample(any.light).unwrap_or(u))?,

@@ -73,14 +73,12 @@ impl<'w> Path<'w> {
             (false, _) => (1, 1),
         };
         let is_seen = state.depth == 0 || state.camera_distance.is_some();
-        let uniform_threshold =
-            if is_seen { Receiver::UNIFORM_THRESHOLD } else { Receiver::INDIRECT_UNIFORM_THRESHOLD };
         Vertex {
             kind,
             random: state.vertex_sample().pairs(),
             candidates: tries as f32,
             directions,
-            receiver: Receiver { point: kind.point(), n: kind.normal(), uniform_threshold },
+            receiver: Receiver { point: kind.point(), n: kind.normal(), is_seen },
         }
     }
 }

@@ -161,19 +161,24 @@ pub struct Receiver {
     pub point: DVec3,
     /// Normal on the lit side; zero if light from all directions is taken into account.
     pub n: Vec3,
-    /// Threshold for choosing uniformly within a distant group of similar emitters, which all
-    /// contribute about equally. It is the maximum ratio of the group's radius to its distance,
-    /// divided by the cosines at the group and at the point.
-    pub uniform_threshold: f32,
+    /// True if the camera sees the point, either directly or through delta lobes. Many other points
+    /// are averaged in each pixel, so faster and noisier samples are worthwhile there.
+    pub is_seen: bool,
 }
 
 impl Receiver {
-    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, either directly or
-    /// through delta lobes.
-    pub const UNIFORM_THRESHOLD: f32 = 0.1;
-    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many later bounces are averaged,
-    /// so each choice of a light matters less.
-    pub const INDIRECT_UNIFORM_THRESHOLD: f32 = 0.3;
+    /// Returns the threshold for choosing uniformly within a distant group of similar emitters,
+    /// which all contribute about equally. It is the maximum ratio of the group's radius to its
+    /// distance, divided by the cosines at the group and at the point.
+    fn uniform_threshold(&self) -> f32 {
+        if self.is_seen { 0.1 } else { 0.3 }
+    }
+
+    /// Returns the ratio of a rectangle's longest edge to its distance below which the rectangle is
+    /// sampled uniformly by area.
+    fn area_limit(&self) -> f32 {
+        if self.is_seen { 0.1 } else { 0.5 }
+    }
 }
 
 /// Light chosen for a point, with the probability of the choice.
@@ -376,8 +381,8 @@ impl LightSampler {
 
     /// Samples a direction from a point to the chosen light. The components of `u` in [0, 1)^2 are
     /// random numbers.
-    pub fn sample(&self, world: &World, choice: &LightChoice, point: DVec3, u: Vec2) -> Option<LightSample> {
-        let probability = choice.probability;
+    pub fn sample(&self, world: &World, choice: &LightChoice, to: &Receiver, u: Vec2) -> Option<LightSample> {
+        let (probability, point) = (choice.probability, to.point);
         match choice.of {
             ChosenLight::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
             ChosenLight::Sky => {
@@ -386,7 +391,7 @@ impl LightSampler {
             }
             ChosenLight::Source(source) => match &self.sources[source as usize] {
                 LightEntry::Light(light) => Some(of_light(world, *light, point, probability)),
-                LightEntry::Area(area) => area.sample(point, probability, u),
+                LightEntry::Area(area) => area.sample(to, probability, u),
             },
         }
     }
@@ -422,7 +427,7 @@ impl LightSampler {
         let Some((source, area)) = self.emitter_at(hit, wi) else { return 0.0 };
         let Some(weights) = self.chances(world, to) else { return 0.0 };
         let choice = weights.of(weights.tree) * self.tree.probability(to, source);
-        let pdf = area.form.pdf(area.normal, to.point, wi, distance);
+        let pdf = area.form.pdf(area.normal, to.point, wi, distance, to.area_limit());
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
@@ -547,9 +552,12 @@ impl AreaLight {
         }
     }
 
-    /// Samples a point on the surface as seen from `point`.
-    fn sample(&self, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
-        let place = self.form.sample(self.normal, point, u)?;
+    /// Samples a point on the surface as seen from a receiver.
+    fn sample(&self, to: &Receiver, choice: f32, u: Vec2) -> Option<LightSample> {
+        if !self.two_sided && self.form.is_behind(self.normal, to.point) {
+            return None;
+        }
+        let place = self.form.sample(self.normal, to.point, u, to.area_limit())?;
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }

@@ -16,7 +16,7 @@ fn each_kind_of_light_is_chosen_with_its_stated_probability() {
     // A point light without attenuation is not in the tree.
     assert_eq!((emitters.outside_tree.len(), emitters.sources.len()), (2, 1));
     for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
-        let to = Receiver { point, n, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
+        let to = Receiver { point, n, is_seen: true };
         let weights = emitters.chances(&world, &to).unwrap();
         let apart: f32 = emitters.outside_tree.iter().map(|apart| weights.of(apart.estimated_irradiance(n))).sum();
         let expected = [apart, weights.of(weights.sky), weights.of(weights.tree)];
@@ -32,7 +32,7 @@ fn each_kind_of_light_is_chosen_with_its_stated_probability() {
                 found[2] += 1;
                 continue;
             };
-            let Some(light) = emitters.sample(&world, &chosen, point, u) else { continue };
+            let Some(light) = emitters.sample(&world, &chosen, &to, u) else { continue };
             let kind = if is_apart(light.light) {
                 0
             } else if light.light == LightId::Environment {

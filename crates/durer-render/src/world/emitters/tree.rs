@@ -152,7 +152,7 @@ impl Node {
     /// Implements [`Node::importances`]. `FACING` is true if the receiver has a normal.
     #[inline(always)]
     fn importances_of<const FACING: bool>(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
-        let (p, n, far2) = (to.point.as_vec3(), to.n, to.uniform_threshold * to.uniform_threshold);
+        let (p, n, far2) = (to.point.as_vec3(), to.n, to.uniform_threshold() * to.uniform_threshold());
         let (mut importances, mut far) = ([0.0; WIDTH], [false; WIDTH]);
         for i in 0..WIDTH {
             let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
@@ -390,11 +390,18 @@ impl LightTree {
     /// Chooses an emitter for a point. `u` in [0, 1) is a random number. The result includes the
     /// probability of the choice.
     pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
+        if self.leaves.len() == 1 {
+            // A sample of the only emitter costs less than the estimate.
+            return Some((0, 1.0));
+        }
         run_plain(Sample { nodes: &self.nodes, to, u })
     }
 
     /// Returns the probability with which [`LightTree::sample`] chooses an emitter.
     pub fn probability(&self, to: &Receiver, emitter: u32) -> f32 {
+        if self.leaves.len() == 1 {
+            return 1.0;
+        }
         self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
     }
 

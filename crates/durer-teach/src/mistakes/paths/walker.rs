@@ -120,7 +120,7 @@ impl<'w> BuggyPathTracer<'w> {
                 return sum;
             }
             let n = if shading.bsdf.passes_light() { Vec3::ZERO } else { shading.frame.normal };
-            let receiver = Receiver { point: at.surface.point(), n, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
+            let receiver = Receiver { point: at.surface.point(), n, is_seen: true };
             if shading.bsdf.has_non_delta() {
                 sum += *throughput * self.direct(&at, &shading, &receiver, numbers);
             }
@@ -212,7 +212,7 @@ impl<'w> BuggyPathTracer<'w> {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
         let Some(choice) = emitters.choose(self.world, to, choice) else { return Spectrum::ZERO };
-        let Some(light) = emitters.sample(self.world, &choice, to.point, u) else { return Spectrum::ZERO };
+        let Some(light) = emitters.sample(self.world, &choice, to, u) else { return Spectrum::ZERO };
         let (value, bsdf_pdf) = shading.eval(light.wi);
         let value = self.with_cosine_bugs(value, shading, light.wi, Some(light.pdf == 0.0));
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {

@@ -37,11 +37,7 @@ fn probabilities_match_sampling_and_sum_to_one() {
         let (tree, order) = LightTree::new(&all);
         for i in 0..40 {
             let n = if i % 2 == 0 { random.direction() } else { Vec3::ZERO };
-            let to = Receiver {
-                point: (12.0 * random.point()).as_dvec3(),
-                n,
-                uniform_threshold: Receiver::INDIRECT_UNIFORM_THRESHOLD,
-            };
+            let to = Receiver { point: (12.0 * random.point()).as_dvec3(), n, is_seen: false };
             let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(&to, i)).sum();
             // If no child of a node contributes, nothing is chosen.
             let always = alike && n == Vec3::ZERO;
@@ -64,11 +60,7 @@ fn lights_behind_a_surface_are_not_chosen() {
     let (tree, order) = LightTree::new(&all);
     let (mut behind, mut chosen) = (0, 0);
     for _ in 0..100 {
-        let to = Receiver {
-            point: (5.0 * random.point()).as_dvec3(),
-            n: random.direction(),
-            uniform_threshold: Receiver::UNIFORM_THRESHOLD,
-        };
+        let to = Receiver { point: (5.0 * random.point()).as_dvec3(), n: random.direction(), is_seen: true };
         for _ in 0..50 {
             let Some((i, _)) = tree.sample(&to, random.between(0.0, 1.0)) else { continue };
             let bounds = all[order[i as usize] as usize].bounds;
@@ -87,7 +79,7 @@ fn every_light_that_reaches_a_point_can_be_chosen() {
     let (tree, order) = LightTree::new(&all);
     for _ in 0..50 {
         let p = 12.0 * random.point();
-        let to = Receiver { point: p.as_dvec3(), n: Vec3::ZERO, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
+        let to = Receiver { point: p.as_dvec3(), n: Vec3::ZERO, is_seen: true };
         for (i, light) in all.iter().enumerate().filter(|(_, light)| light.power > 0.0) {
             let to_point = p - light.bounds.center();
             let emits = light.cos_normals < 0.0
