@@ -269,7 +269,9 @@ fn of_measure(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "at" => arg.long("moment"),
         "studio" => arg.help("Measure these lights instead of the light of the model"),
-        "integrator" => arg.help("Integrator: path, or photons for light that mirrors and glass focus [default: path]"),
+        "integrator" => arg
+            .help("Integrator: path, or photons for light that mirrors and glass focus [default: path]")
+            .hide_possible_values(true),
         _ if CAMERA.contains(&&*name_of(arg.get_id())) => arg.hide(true),
         _ => arg,
     }

@@ -113,6 +113,13 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
     let command = words.get(1).and_then(|name| program.find_subcommand(name)).unwrap_or(program);
     let has = |option: &str| command.get_arguments().any(|argument| argument.get_long() == Some(option));
     let known = HINTS.iter().find(|(names, option, _)| names.contains(&given.as_str()) && has(option));
+    let several = || {
+        let is_second_scene = command.get_name() == "render" && !given.starts_with('-') && given.contains('.');
+        is_second_scene.then(|| {
+            "`durer render` takes one scene: `for scene in *.txt; do durer render $scene -o ${scene%.txt}.png; done`"
+                .to_string()
+        })
+    };
     let is_other = |render: &&Command| ![render.get_name(), program.get_name()].contains(&command.get_name());
     let render = program.find_subcommand("render").filter(is_other);
     let is_given = |argument: &Arg| match given.strip_prefix("--") {
@@ -135,7 +142,7 @@ pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Err
         };
         Some(near.map_or_else(listed, |near| format!("did you mean `--{near}`?")))
     };
-    let help = known.map(|row| row.2.to_string()).or_else(|| separate_value(&words, &given));
+    let help = known.map(|row| row.2.to_string()).or_else(|| separate_value(&words, &given)).or_else(several);
     let Some(help) = help.or_else(|| negation(&given, command)).or_else(of_render).or_else(similar) else {
         return error;
     };

@@ -7,6 +7,7 @@ mod stand_in;
 use serde::{Deserialize, Serialize};
 pub use stand_in::{StandIn, stand_in};
 use std::collections::BTreeSet;
+use std::fmt;
 use std::sync::Arc;
 
 /// Maximum number of errors that are collected for one input file.
@@ -182,6 +183,18 @@ pub struct Diagnostics {
     errors: usize,
     warnings: usize,
 }
+
+/// Writes the message of each error on a line of its own. [`Files`] is needed for file, line and
+/// column.
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let errors = self.list.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
+        let messages: Vec<&str> = errors.map(|error| error.message.as_str()).collect();
+        f.write_str(&messages.join("\n"))
+    }
+}
+
+impl std::error::Error for Diagnostics {}
 
 impl Diagnostics {
     /// Adds a diagnostic. If the collection already contains [`ERROR_LIMIT`] errors (or that many

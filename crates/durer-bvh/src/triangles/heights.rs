@@ -23,7 +23,7 @@ impl TriangleBvh {
     ///
     /// # Errors
     ///
-    /// Panics if there are 2^28 triangles or more.
+    /// Returns [`BuildError::TooManyTriangles`] if there are 2^28 triangles or more.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};

@@ -94,7 +94,13 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     }
     let majority = if nodes > classic { set::F23 } else { set::ALL };
     let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
+    let mut depth = 0_usize;
     for (i, token) in tokens.iter().enumerate() {
+        depth = match token.kind {
+            TokenKind::Open => depth + 1,
+            TokenKind::Close => depth.saturating_sub(1),
+            _ => depth,
+        };
         let word = text(i);
         let at = |i: usize| tokens.get(i).map(|token| token.kind);
         let (braced, named) = (at(i + 1) == Some(TokenKind::Open), at(i + 1) == Some(TokenKind::Word));
@@ -102,7 +108,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             continue;
         } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
             (set::F03, format!("`{word} {{` with a brace is syntax of 2003"))
-        } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
+        } else if braced && depth > 0 && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
             (set::F03, format!("`{word}` inside a group is syntax of 2003"))
         } else if word == "cubeMap" && exists(&format!("{}/left.png", text(i + 1))) {
             (set::F16, "the cube map has PNG files".into())

@@ -135,7 +135,9 @@ impl Reader<'_, '_> {
             return Some(suggestion);
         }
         let near = did_you_mean(word, known).filter(|near| *near != word)?;
-        (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
+        // A word with another case, or in the plural, is meant even if it is a word elsewhere.
+        let is_form = near.eq_ignore_ascii_case(word) || near.strip_suffix('s') == Some(word);
+        (dialects_of(word).is_none() || is_form).then_some(near)
     }
 
     /// Adds a fix to an error about a word. The fix replaces the word with the one that was

@@ -6,13 +6,22 @@ use durer_scene::describe::{DescribedKind as _, Value};
 use durer_scene::dialect::{AmbientWithoutLights, DialectRules, Quirk};
 use durer_scene::light::{Illuminate as _, Light, PHOTOMETRIC_FIELDS};
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::Scene;
+use durer_scene::scene::{Material, Scene};
 
 /// Returns the field that sets the strength of a light in photometric units, if it is 0.
 fn zero_strength(light: &Light) -> Option<&'static str> {
     let fields = light.fields().iter().enumerate();
     let mut fields = fields.filter(|(_, field)| PHOTOMETRIC_FIELDS.contains(&field.name));
     fields.find(|(i, _)| light.get(*i) == Some(Value::Float(0.0))).map(|(_, field)| field.name)
+}
+
+/// Returns true if no material has a highlight or reflects anything.
+fn has_plain_colors(scene: &Scene) -> bool {
+    scene.materials.iter().all(|material| match &material.value {
+        Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
+        Material::Principled(..) | Material::Hair(..) => false,
+        Material::Solid(..) => true,
+    })
 }
 
 /// Returns the lights and the ambient light as the dialect interprets them.
@@ -33,8 +42,9 @@ pub(super) fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diag
             true => "the scene has no lights: only its ambient light is visible, so colours are flat",
             false => "the scene has no lights: it is shown with an ambient light of 1 1 1, so colours are flat",
         };
-        // Scenes of the first assignments have no lights, and their ambient light is 1 1 1.
-        let intended = own == Color::ONE;
+        // Scenes of the first assignments have no lights. Their ambient light is 1 1 1, or their
+        // materials are plain colours.
+        let intended = own == Color::ONE || own == Color::ZERO && scene.lights.is_none() && has_plain_colors(scene);
         let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
         return (Vec::new(), ambient);

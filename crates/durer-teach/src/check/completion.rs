@@ -9,7 +9,7 @@ use durer_scene::camera::Projection;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Background, Material};
+use durer_scene::scene::Background;
 
 /// Adds an effect, help or edits to a finding, based on the compiled scene.
 pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
@@ -146,21 +146,8 @@ fn foreign_in_nodes(scene_probe: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Completes the finding about missing lights. It is only a note if all materials are plain
-/// colours.
+/// Completes the finding about missing lights.
 fn no_light(scene_probe: &SceneProbe, finding: &mut Finding) {
-    let scene = scene_probe.input.scene;
-    let plain = |material: &Material| match material {
-        Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
-        Material::Principled(..) | Material::Hair(..) => false,
-        Material::Solid(..) => true,
-    };
-    let flat = scene.lights.is_none()
-        && scene.background.ambient_light == Vec3::ZERO
-        && scene.materials.iter().all(|material| plain(&material.value));
-    if flat {
-        finding.diagnostic.severity = Severity::Note;
-    }
     finding.affects_whole_picture = true;
     finding.diagnostic.effect = Some("every surface has one flat colour, without shading or shadows".into());
     finding.diagnostic.help = Some(

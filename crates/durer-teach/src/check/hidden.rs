@@ -65,7 +65,7 @@ pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(format!("the {name} hides everything else{place}"))
         .at(scene_probe.object_span(front))
         .label(format!("covers {} of the picture", percent(covered, scene_probe.probes.len())))
-        .effect(format!("{} behind it are invisible", counted(hidden, "object", "objects")))
+        .effect(counted(hidden, "object is hidden behind it", "objects are hidden behind it"))
         .help(help);
     let moved = moved_behind(scene_probe, front).filter(|_| !backwards && !behind);
     let diagnostic = match (moved, turned) {
