@@ -139,10 +139,10 @@ fn back(v: Vec3) -> Vec3 {
 
 fn of_lights(world: &World, cells: DirectionGrid) -> PdfComparison {
     let point = Vec3::ZERO.as_dvec3();
-    let to = Receiver { point, n: Vec3::ZERO, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
+    let to = Receiver { point, n: Vec3::ZERO, is_seen: true };
     let sample = |choice: f32, u: Vec2| {
         let choice = world.emitters().choose(world, &to, choice)?;
-        Some(rotated(world.emitters().sample(world, &choice, point, u)?.wi))
+        Some(rotated(world.emitters().sample(world, &choice, &to, u)?.wi))
     };
     let pdf = |wi: Vec3| {
         let dir = back(wi);
