@@ -45,7 +45,11 @@ impl ComparedPair {
         match (&self.outcome, &self.diagnosis) {
             // If the scene explains nothing, report what the pictures alone explain.
             (Outcome::Compared(comparison), Some(diagnosis)) if has_only_findings(comparison, diagnosis) => {
-                explained(comparison, None).into_iter().chain(mistakes::lines(diagnosis)).collect()
+                let mut lines = explained(comparison, None);
+                if !comparison.has_cause() {
+                    lines.extend(mistakes::lines(diagnosis));
+                }
+                lines
             }
             (_, Some(diagnosis)) => mistakes::lines(diagnosis),
             (Outcome::Compared(comparison), None) => explained(comparison, Some(self.shows_color)),
@@ -113,7 +117,7 @@ fn explained(comparison: &Comparison, scene: Option<bool>) -> Vec<String> {
         let percent = mistakes::percent(finding.explained);
         match i {
             // The location of a difference does not explain it.
-            0 if finding.kind.ends_with("-parts") => {
+            0 if !comparison.has_cause() => {
                 let advice = match scene {
                     Some(true) => ": the pictures alone do not show the cause; pass `--scene` to try common mistakes",
                     Some(false) => ": the pictures alone do not show the cause",

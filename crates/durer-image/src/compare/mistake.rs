@@ -76,6 +76,11 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     if close && fit.matched >= MIN_MATCHED {
         return findings;
     }
+    let edges = (!rules.is_empty() && !fitted).then(|| edges_after(pair, &rules, &test)).flatten();
+    if let Some(edges) = edges.filter(|edges| fit.remaining * (1.0 - edges.explained) <= MAX_LEFT_FITTED) {
+        findings.push(Finding { explained: 1.0 - fit.remaining * (1.0 - edges.explained), ..edges });
+        return findings;
+    }
     let differing = samples.iter().filter(|s| (s.test - s.reference).abs().max_element() > 1.5 / 255.0).count();
     let part = (differing >= MIN_DIFFERING_PIXELS).then(|| parts::finding(&reference, &test, &samples)).flatten();
     match part {
@@ -86,6 +91,14 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Returns the finding that the difference which rules leave is at edges.
+fn edges_after(pair: &Pair, rules: &[Rule], test: &View) -> Option<Finding> {
+    let apply = |pixels: Vec<Vec3>, rule: &Rule| rule.apply(&View::of(pair, &pixels));
+    let pixels = rules.iter().fold(pair.reference.clone(), apply);
+    let view = View::of(pair, &pixels);
+    parts::remaining_edges(&view, test, &sample::samples(&view, test))
 }
 
 /// Finds a sequence of rules, each of which explains most of the difference that the previous rules

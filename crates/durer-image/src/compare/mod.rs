@@ -93,6 +93,13 @@ pub struct Comparison {
     pub flip_map: Vec<f32>,
 }
 
+impl Comparison {
+    /// Returns true if the findings name the cause of the difference, and not only where it is.
+    pub fn has_cause(&self) -> bool {
+        self.findings.first().is_some_and(|finding| !finding.kind.ends_with("-parts"))
+    }
+}
+
 /// Error that prevents two pictures from being compared: they have different sizes, or one of them
 /// is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -137,6 +137,16 @@ fn at_edge(picture: &View, s: &Sample) -> bool {
 /// Detects differences that occur only at edges and come from different sample positions or
 /// different filtering.
 fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    edges_as("the pictures differ only at edges", reference, test, samples)
+}
+
+/// Detects what [`edges`] detects after other mistakes were applied to the reference.
+pub fn remaining_edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    edges_as("the edges differ as well", reference, test, samples)
+}
+
+/// Implements [`edges`]. `what` begins the description.
+fn edges_as(what: &str, reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
     let share = at_edges.len() as f64 / samples.len() as f64;
     let explained = difference(&at_edges) / difference(samples);
@@ -174,7 +184,7 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
             || is_even.then(|| "samples have other positions in the pixels, or are averaged differently".into());
         flow::cause(reference, &at_edges).or_else(elsewhere)
     }?;
-    let words = format!("the pictures differ only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
+    let words = format!("{what} ({:.1} % of the picture): {cause}", 100.0 * share);
     let is_mixed = mixed(reference, test, &at_edges) > MIXED;
     let is_narrow = inside(reference, test, &at_edges) < MAX_INSIDE;
     (share < 0.4 && is_mixed && is_narrow && has_equal_sides(reference, test, &at_edges)).then_some(Finding {

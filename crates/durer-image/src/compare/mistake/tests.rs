@@ -164,6 +164,11 @@ fn shifted_samples() {
     };
     finds("edges", "the reference is antialiased", &smooth, &middle);
     finds("edges", "the picture is antialiased", &middle, &smooth);
+    // As a student renders the scene of an old program, with gamma and antialiasing.
+    let found = findings(&middle, &move |x, y| smooth(x, y).map(linear_to_srgb));
+    let kinds: Vec<_> = found.iter().map(|finding| finding.kind).collect();
+    assert_eq!(kinds, ["gamma-once-more", "edges"], "{found:?}");
+    assert!(found[1].description.contains("the picture is antialiased") && found[1].explained > 0.99, "{found:?}");
 }
 
 /// A few pixels at edges that differ by rounding, and specks of noise, are no antialiasing.
