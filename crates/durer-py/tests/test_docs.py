@@ -1,7 +1,11 @@
 """Examples in docstrings."""
 
+import dataclasses
 import doctest
 import inspect
+import pydoc
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -41,6 +45,34 @@ def test_examples_run(examples):
 def test_functions_and_classes_have_examples():
     for thing in SHOWN:
         assert ">>>" in inspect.getdoc(thing), thing
+
+
+def test_fields_of_results_are_described():
+    for result in (durer.Hits, durer.AllHits, durer.Nearest, durer.Surfaces, durer.Illuminance):
+        help = pydoc.render_doc(result, renderer=pydoc.plaintext)
+        for field in dataclasses.fields(result):
+            assert field.name.startswith("_") or f"  {field.name}: " in help, f"{result.__name__}.{field.name}"
+
+
+def test_views_are_listed():
+    from durer._options import OPTIONS
+
+    assert all(f'"{view}"' in durer.World.load.__doc__ for view in OPTIONS["view"].words)
+
+
+def test_help_without_anywidget():
+    code = """
+import sys; sys.modules["anywidget"] = None
+import durer, pydoc
+assert "Hits" in pydoc.render_doc(durer) and not hasattr(durer, "widget")
+for statement in ("durer.widget", "from durer import widget", "import durer.widget"):
+    try:
+        exec(statement)
+    except (AttributeError, ImportError) as error:
+        print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == 3 * "durer.widget needs anywidget: pip install anywidget\n"
 
 
 def test_mesh_of_an_object_with_vertices_and_faces():

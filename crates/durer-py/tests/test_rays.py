@@ -98,8 +98,9 @@ def test_contains_knows_the_cube_exactly():
     p = np.random.default_rng(7).uniform(-0.5, 1.5, (100_000, 3)).astype(np.float32)
     assert (cube.contains(p) == ((p > 0) & (p < 1)).all(1)).all()
     assert cube.is_closed
-    with pytest.warns(UserWarning, match="3 open edges"):
+    with pytest.warns(UserWarning, match="3 open edges") as warned:
         durer.Mesh(CUBE, CUBE_FACES[1:]).contains([0.5, 0.5, 0.5])
+    assert warned[0].filename == __file__
     assert not cube.contains([[np.nan, 0.5, 0.5], [np.inf, 0, 0]]).any()
 
 
@@ -198,6 +199,11 @@ def test_threads_change_no_bit(ball):
         (lambda m: durer.Scene([(m, np.zeros((4, 4)))]), "the last row of the matrix of object 0 must be 0 0 0 1, but is 0 0 0 0"),
         (lambda m: durer.Scene([(m, np.zeros((3, 4)))]), "the matrix of object 0 cannot be inverted"),
         (lambda m: durer.Scene([3]), "object 0 must be a Mesh"),
+        (lambda m: m.closest([0, 0, 0], [0, 0, 1], tmax=2), r"^closest\(\) has no argument tmax: did you mean t_max\?$"),
+        (lambda m: m.nearest([0, 0, 0], color=2), r"^nearest\(\) has no argument color: its arguments are points, within, "),
+        (lambda m: m.closest([0, 0, 0]), r"^closest\(\) missing 1 required positional argument: 'directions'$"),
+        (lambda m: durer.Mesh(m, face=3), r"^Mesh\(\) has no argument face: did you mean faces\?$"),
+        (lambda m: m.closest([0, 0, 0], [0, 0, 1], progress=3), "^progress must be a function of two numbers"),
     ],
 )
 def test_errors_name_expected_values(ball, wrong, said):

@@ -201,6 +201,14 @@ def test_points_and_normals_have_the_same_bits_with_any_threads():
     assert np.allclose(one.normal[one.hit], normal[one.hit], atol=1e-7)
 
 
+def test_u_and_v_weight_corners_1_and_2():
+    mesh, points = durer.Mesh(*SHAPES["bumpy"]), 2 * directions(500, 40)
+    for found in (mesh.closest(points, -points), mesh.all_hits(points, -points), mesh.nearest(points)):
+        a, b, c = mesh.vertices[mesh.faces[found.triangle]].swapaxes(0, 1)
+        u, v = found.uv[:, :1], found.uv[:, 1:]
+        assert len(u) >= 500 and np.allclose((1 - u - v) * a + u * b + v * c, found.point, atol=1e-6)
+
+
 def test_meshes_are_refitted_and_objects_moved():
     vertices, faces = SHAPES["bumpy"]
     mesh = durer.Mesh(vertices, faces)

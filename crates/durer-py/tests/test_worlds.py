@@ -182,6 +182,60 @@ def test_invalid_options_are_refused(whitted):
     assert "samples" in durer.options() and "output" not in durer.options() and "depth" in durer.kinds()
 
 
+def test_arguments_of_a_wrong_type_are_named(whitted, tmp_path):
+    camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=40)
+    ball, pictures = durer.Sphere(center=(0, 0, 0), radius=1), whitted.render(size=(8, 6), samples=1)
+    for wrong, said in [
+        (lambda: durer.World(None, []), "camera must be a camera such as PerspectiveCamera, but is of type NoneType"),
+        (lambda: durer.World(camera, ball), "objects must be a list of shapes, .*, but is of type Sphere"),
+        (lambda: durer.World(camera, [ball], [3]), r"lights\[0\] must be a light such as PointLight, but is of type int"),
+        (lambda: durer.World(camera, [ball], [], "red"), "background must be a Background, or None, but is of type str"),
+        (lambda: ball.of("red"), "material must be a material such as PhongMaterial, but is of type str"),
+        (lambda: whitted.denoise(pictures["color"]), "pictures must be the result of render, or a Part, but is of type ndarray"),
+        (lambda: whitted.render(part=pictures), "part must be a Part, or None, but is of type Pictures"),
+        (lambda: whitted.render(callback=3), "callback must be a function of the images, but is of type int"),
+        (lambda: whitted.render(progress=3), "progress must be a function of two numbers, .*, but is of type int"),
+        (lambda: durer.Model(3), "mesh must be a Mesh, or an object with vertices and faces, but is of type int"),
+        (lambda: durer.Moved(3, (0, 0, 0)), "objects must be shapes, meshes, groups or solids, but 3 is of type int"),
+    ]:
+        with pytest.raises(TypeError, match=f"^{said}$"):
+            wrong()
+    with pytest.raises(ValueError, match=r"^place must be three numbers, or a matrix, 3 x 4 or 4 x 4, but has the shape \(2,\)$"):
+        ball.at((1, 2))
+    path = tmp_path / "none" / "a.png"
+    with pytest.raises(FileNotFoundError) as raised:
+        pictures.save(path)
+    assert str(raised.value) == f"cannot write `{path}`: the folder `{path.parent}` does not exist"
+    (tmp_path / "a.png").mkdir()
+    with pytest.raises(OSError) as raised:
+        pictures.save(tmp_path / "a.png")
+    assert raised.value.filename == str(tmp_path / "a.png") and os.listdir(tmp_path) == ["a.png"]
+
+
+def test_objects_with_vertices_and_faces_are_meshes():
+    class Trimesh:
+        vertices, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+
+    camera, other = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=40), Trimesh()
+    worlds = [durer.World(camera, [item]) for item in (durer.Mesh(other), other, durer.Model(other))]
+    assert len({world.digest for world in worlds}) == 1
+    durer.World(camera, [durer.Moved(other, (1, 0, 0))])
+
+
+def test_progress_ends_with_the_total(whitted):
+    told = []
+
+    def tell(done, total):
+        told.append((done, total))
+
+    whitted.render(size=(64, 64), samples=64, progress=tell)
+    whitted.render(size=(64, 64), samples=64, noise_threshold=0.5, progress=tell)
+    assert told[-1] == (64**3, 64**3) and {total for _, total in told} == {64**3}
+    told.clear()
+    whitted.measure(np.ones((7, 3)), samples=64, progress=tell)
+    assert told[-1] == (7, 7) and {total for _, total in told} == {7}
+
+
 def test_pictures_are_compared():
     a = np.zeros((32, 32, 3), np.float32)
     b = a.copy()
@@ -353,5 +407,7 @@ def test_arrays_are_written_as_pictures(tmp_path):
     light = np.linspace(0, 4, 6 * 8 * 3, dtype=np.float32).reshape(6, 8, 3)
     durer.write(tmp_path / "light.pfm", light)
     assert (durer.read(tmp_path / "light.pfm")[0] == light).all()
+    durer.write(tmp_path / "grey.pfm", light[..., 0])
+    assert (durer.read(tmp_path / "grey.pfm")[0] == light[..., :1]).all()
     with pytest.raises(ValueError, match="picture must have the shape"):
         durer.write(tmp_path / "wrong.png", np.zeros(5))

@@ -34,7 +34,11 @@ _LAZY_MODULES = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
 
 def __getattr__(name: str) -> Any:
     if name in _LAZY_MODULES:
-        return importlib.import_module(f".{name}", __name__)
+        try:
+            return importlib.import_module(f".{name}", __name__)
+        except ModuleNotFoundError as error:
+            # `help`, `hasattr` and others expect this error of a name that cannot be had.
+            raise AttributeError(str(error)) from error
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

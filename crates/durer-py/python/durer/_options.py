@@ -3,7 +3,6 @@ expects them."""
 
 from __future__ import annotations
 
-import difflib
 import os
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
@@ -11,6 +10,7 @@ from typing import Any, Mapping, Optional, Sequence
 import numpy as np
 
 from . import _durer
+from ._errors import hint
 
 #: Options as pairs: the name without leading dashes, and the value as text, empty for a flag.
 Pairs = list[tuple[str, str]]
@@ -70,9 +70,7 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
                 where = "durer.load" if is_reading(name) else "render"
                 raise TypeError(f"{keyword} is an option of {where}")
             known = [n.replace("-", "_") for n in OPTIONS if is_reading(n) == reading]
-            near = difflib.get_close_matches(keyword, known, 1)
-            hint = f"did you mean {near[0]}?" if near else "durer.options() lists them all"
-            raise TypeError(f"there is no option {keyword}: {hint}")
+            raise TypeError(f"there is no option {keyword}: {hint(keyword, known, 'durer.options() lists them all')}")
         found += [(name, text) for text in _texts(keyword, name, value)]
     return found
 

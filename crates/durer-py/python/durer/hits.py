@@ -42,15 +42,17 @@ class _SurfaceHits:
 
     @cached_property
     def point(self) -> Points:
-        """Hit points, interpolated from the triangles' corners; NaN for misses. Float32, or float64
-        if the mesh or scene is far from the origin. Use `leave` for origins of secondary rays."""
+        """Hit points, of shape (..., 3), interpolated from the triangles' corners; NaN for misses.
+        Float32, or float64 if the mesh or scene is far from the origin. Use `leave` for origins of
+        secondary rays."""
         shape, source = self.triangle.shape, self._source
         return _durer.hit_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
 
     @cached_property
     def normal(self) -> Floats:
-        """Unit normals of the triangles, on the side from which the mesh's corners are
-        counterclockwise (outwards), also for mirrored instances; 0 for misses."""
+        """Unit normals of the triangles, of shape (..., 3), on the side from which the mesh's
+        corners are counterclockwise (outwards), also for mirrored instances; 0 for misses.
+        Float32."""
         shape = self.triangle.shape
         return _durer.hit_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
 
@@ -83,13 +85,22 @@ def _row(array: Any, shape: tuple[int, ...]) -> Any:
 class Hits(_SurfaceHits):
     """First hits of rays with a mesh or a scene. All arrays have the shape of the rays, for example
     (n,), followed by the components of vectors. Hits can be indexed like arrays of that shape:
-    `hits[hits.hit]`, `hits[:, None]`."""
+    `hits[hits.hit]`, `hits[:, None]`.
 
-    #: Distance along the ray, in units of the length of its direction; infinite for misses.
+    t: distance along the ray, in units of the length of its direction; infinite for misses.
+    Float32.
+
+    triangle: index of the triangle in its mesh, a row of `faces`; -1 for misses. Int32.
+
+    uv: u and v, each from 0 to 1, the weights of the triangle's corners 1 and 2, counted from 0.
+    The point is (1 - u - v) a + u b + v c for the corners a, b and c in the order of `faces`. 0 for
+    misses. Float32 of shape (..., 2).
+
+    hit, object, point, normal: see below. They are computed when they are first read.
+    """
+
     t: Floats
-    #: Index of the triangle in its mesh; -1 for misses.
     triangle: Ints
-    #: Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     uv: Floats
     _objects: Optional[Ints]
     _source: _Target
@@ -102,7 +113,7 @@ class Hits(_SurfaceHits):
 
     @cached_property
     def object(self) -> Ints:
-        """Index of the object in the scene, or 0 for a mesh; -1 for misses."""
+        """Index of the object in the scene, or 0 for a mesh; -1 for misses. Int32."""
         return np.minimum(self.triangle, 0) if self._objects is None else self._objects
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -132,13 +143,28 @@ class Hits(_SurfaceHits):
 
 @dataclass(frozen=True, eq=False)
 class AllHits(_SurfaceHits):
-    """All hits of rays with a mesh or a scene, ray by ray, sorted by distance."""
+    """All hits of rays with a mesh or a scene, ray by ray, and for each ray by increasing distance.
+    All arrays except `count` and `offsets` have one row per hit.
 
-    #: For each hit, the index of its ray; ascending.
+    ray: index of the hit's ray in the flattened array of rays, in ascending order. Int64.
+
+    count: number of hits of each ray, in the shape of the rays. Int64.
+
+    t: distance along the ray, in units of the length of its direction. Float32.
+
+    triangle: index of the triangle in its mesh. Int32.
+
+    object: index of the object in the scene, or 0 for a mesh. Int32.
+
+    uv: weights of the triangle's corners 1 and 2, as in `Hits`. Float32 of shape (hits, 2).
+
+    offsets, point, normal: see below.
+
+    The hits of ray `i` of a flat array of rays are rows `offsets[i]` to `offsets[i + 1]`.
+    """
+
     ray: npt.NDArray[np.int64]
-    #: Number of hits of each ray, in the shape of the rays.
     count: npt.NDArray[np.int64]
-    #: The fields of `Hits`, with one row per hit.
     t: Floats
     triangle: Ints
     object: Ints
@@ -163,17 +189,25 @@ class AllHits(_SurfaceHits):
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """For query points, the nearest points on the surface of a mesh or a scene."""
+    """For query points, the nearest points on the surface of a mesh or a scene. All arrays have the
+    shape of the query points without its last axis, followed by the components of vectors.
 
-    #: Distance to the surface; infinite if no point is within the limit.
+    distance: distance to the surface, 0 or more, in the unit of the coordinates; infinite if no
+    point of the surface is within the limit. Float64.
+
+    point: nearest point; NaN if none is within the limit. Float64 of shape (..., 3).
+
+    triangle: index of the triangle in its mesh; -1 if none is within the limit. Int32.
+
+    object: index of the object in the scene, or 0 for a mesh; -1 if none is within the limit. Int32.
+
+    uv: weights of the triangle's corners 1 and 2, as in `Hits`. Float64 of shape (..., 2).
+    """
+
     distance: Doubles
-    #: Nearest point; NaN if no point is within the limit.
     point: Doubles
-    #: Index of the triangle; -1 if no point is within the limit.
     triangle: Ints
-    #: Index of the object in the scene, or 0 for a mesh.
     object: Ints
-    #: Second and third barycentric coordinates.
     uv: Doubles
 
     def __repr__(self) -> str:

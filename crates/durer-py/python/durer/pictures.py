@@ -38,13 +38,15 @@ def write(
     tone: str = "none",
     bits: int = 8,
 ) -> None:
-    """Writes an array of shape (height, width, 3) to an image file: png, jpg, webp, tga, bmp, ppm,
-    pfm, hdr or exr. Values of type uint8 are display values, which are stored unchanged; others are
-    linear light, to which `exposure`, `tone` and `transfer` are applied as in `Pictures.save`.
+    """Writes an array of shape (height, width, 3), or (height, width) for grey, to an image file:
+    png, jpg, webp, tga, bmp, ppm, pfm, hdr or exr. Values of type uint8 are display values, which
+    are stored unchanged; others are linear light, to which `exposure`, `tone` and `transfer` are
+    applied as in `Pictures.save`. For data from 0 to 1, use `transfer="linear"`.
 
-    >>> durer.write("grey.png", np.full((30, 40, 3), 0.5))
+    >>> durer.write("grey.png", np.full((30, 40), 0.5), transfer="linear")
     """
-    values, is_display = _scaled("picture", picture)
+    array = as_array("picture", picture)
+    values, is_display = _scaled("picture", np.stack([array] * 3, axis=-1) if array.ndim == 2 else array)
     shown = shown_with(transfer, exposure, tone, bits)
     content = _durer.encode(os.fspath(path), [("color", values, None, not is_display)], shown)
     write_atomically(Path(path), content)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, Points, as_array, as_indices, as_matrix, as_points, as_scalars, as_vectors, rows
-from ._errors import SceneError, with_python_names
+from ._errors import SceneError, with_hints, with_python_names
 from ._mesh import FAR, centered, open_edges
 from ._options import pairs
 from ._progress import Progress, watch
@@ -48,6 +48,7 @@ def _spread(array: Any, shape: tuple[int, ...]) -> Any:
     return rows(array, 3)
 
 
+@with_hints
 class _Rays:
     """Queries that meshes and scenes share.
 
@@ -61,8 +62,9 @@ class _Rays:
     fastest if neighbours in the array are neighbours in space.
 
     `threads` limits the number of threads; None uses all processors. Results have the same bits for
-    any number. `progress` is called with the finished and the total work; by default, long queries
-    show a progress line on a terminal. Ctrl-C stops a query.
+    any number. `progress` is a function that is called with the finished and the total work, every
+    0.05 seconds and at the end; an exception in it stops the query. By default, long queries show a
+    progress line on a terminal; with False, they do not. Ctrl-C stops a query.
     """
 
     _tree: _durer.Tree
@@ -223,6 +225,7 @@ def check_threads(threads: Optional[int]) -> Optional[int]:
     return threads
 
 
+@with_hints
 class Mesh(_Rays):
     __doc__ = (_Rays.__doc__ or "").replace(
         "Queries that meshes and scenes share.",
@@ -389,7 +392,7 @@ class Mesh(_Rays):
     ) -> Bools:
         if not self.is_closed:
             what = f"the mesh has {self.open_edges} open edges, so that its inside is not well defined"
-            warnings.warn(what, stacklevel=2)
+            warnings.warn(what, stacklevel=3)
         return super().contains(points, threads=threads, progress=progress)
 
     contains.__doc__ = _Rays.contains.__doc__
@@ -437,6 +440,7 @@ class Mesh(_Rays):
 Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
 
 
+@with_hints
 class Scene(_Rays):
     __doc__ = (_Rays.__doc__ or "").replace(
         "Queries that meshes and scenes share.",

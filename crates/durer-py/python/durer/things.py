@@ -3,12 +3,14 @@ a file."""
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Iterable, Mapping, Optional, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._arrays import as_array, as_matrix, finite
+from ._errors import check_type
 from .rays import Mesh
 
 Self = TypeVar("Self", bound="Object")
@@ -82,8 +84,7 @@ class Object:
 
     def of(self: Self, material: Material) -> Self:
         """Returns the object with a material. Parts that have a material keep it."""
-        import copy
-
+        check_type("material", material, Material, "a material such as PhongMaterial")
         other = copy.copy(self)
         other.material = material
         return other
@@ -127,9 +128,7 @@ class Writer:
 
     def object(self, item: Union[Object, Mesh], around: Optional[Material]) -> str:
         """Returns an object as text, preceded by its material."""
-        item = Model(item) if isinstance(item, Mesh) else item
-        if not isinstance(item, Object):
-            raise TypeError(f"objects must be shapes, meshes, groups or solids, but {item!r} is of type {type(item).__name__}")
+        item = as_object(item)
         material = item.material or around
         words = "" if material is None else f"MaterialIndex {self.number(material)} "
         return words + item.write(self, material)
@@ -143,16 +142,32 @@ class Shape(Thing, Object):
 
 
 class Model(Object):
-    """Mesh as an object of a scene."""
+    """Mesh as an object of a scene. Like `Mesh`, accepts an object with vertices and faces, such as
+    a `trimesh.Trimesh`."""
 
-    def __init__(self, mesh: Mesh) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: Any) -> None:
+        if not _is_mesh(mesh):
+            raise TypeError(f"mesh must be a Mesh, or an object with vertices and faces, but is of type {type(mesh).__name__}")
+        self.mesh = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         mesh, (x, y, z) = f"TriangleMesh {{ obj_file {writer.mesh(self.mesh)} }}", self.mesh._center.tolist()
         if not self.mesh._far:
             return mesh
         return f"Transform {{ Matrix {{ 1 0 0 {x!r}  0 1 0 {y!r}  0 0 1 {z!r}  0 0 0 1 }} {mesh} }}"
+
+
+def _is_mesh(item: Any) -> bool:
+    return isinstance(item, Mesh) or hasattr(item, "vertices") and hasattr(item, "faces")
+
+
+def as_object(item: Any) -> Object:
+    """Returns a shape, group or solid unchanged, and a mesh as a `Model`."""
+    if isinstance(item, Object):
+        return item
+    if not _is_mesh(item):
+        raise TypeError(f"objects must be shapes, meshes, groups or solids, but {item!r} is of type {type(item).__name__}")
+    return Model(item)
 
 
 class Group(Object):
@@ -203,16 +218,17 @@ class Moved(Object):
 
     def __init__(self, item: Union[Object, Mesh], place: npt.ArrayLike) -> None:
         array = as_array("place", place)
+        if array.shape not in ((3,), (3, 4), (4, 4)):
+            raise ValueError(f"place must be three numbers, or a matrix, 3 x 4 or 4 x 4, but has the shape {array.shape}")
         if array.shape == (3,):
             array = np.concatenate([np.eye(3), array[:, None]], axis=1)
-        self.item, self.matrix = item, as_matrix("place", array)
-        self.material = None if isinstance(item, Mesh) else item.material
+        self.item, self.matrix = as_object(item), as_matrix("place", array)
+        self.material = self.item.material
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         rows = "  ".join(" ".join(number(x) for x in row) for row in self.matrix)
-        inner = Model(self.item) if isinstance(self.item, Mesh) else self.item
         # A transform contains one object, without a material keyword.
-        return f"Transform {{ Matrix {{ {rows}  0 0 0 1 }} {inner.write(writer, material)} }}"
+        return f"Transform {{ Matrix {{ {rows}  0 0 0 1 }} {self.item.write(writer, material)} }}"
 
 
 def ply(mesh: Mesh) -> bytes:

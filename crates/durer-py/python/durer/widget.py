@@ -4,7 +4,7 @@
 
     Explorer(durer.load("scene.txt"))
 
-It needs anywidget: `pip install durer[notebook]`.
+It needs anywidget: `pip install anywidget`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,16 @@ import re
 from pathlib import Path
 from typing import Any, Optional
 
-import anywidget
 import numpy as np
 import numpy.typing as npt
-import traitlets
 
 from .world import World
+
+try:
+    import anywidget
+    import traitlets
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError("durer.widget needs anywidget: pip install anywidget", name=error.name) from None
 
 _Vector = npt.NDArray[np.float64]
 

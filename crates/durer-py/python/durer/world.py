@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, as_points, as_vectors
-from ._errors import SceneError, with_python_names
+from ._errors import SceneError, check_type, with_hints, with_python_names
 from ._options import OPTIONS, Pairs, is_reading, is_work, pairs, parse_words
 from ._progress import Progress, watch
 from .rays import Mesh, check_rays, check_threads
@@ -33,6 +33,7 @@ _LIGHT_IMAGES = {
 }
 
 
+@with_hints
 class Pictures(dict[str, Floats]):
     """Rendered images by name, as float32 arrays with the top row first. `color` is linear light of
     shape (height, width, 3). `alpha` is the fraction of each pixel that the camera covers, and
@@ -156,14 +157,19 @@ def _holds_all(name: str) -> bool:
 
 def write_atomically(path: Path, content: bytes) -> None:
     """Writes a file atomically."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write `{path}`: the folder `{path.parent}` does not exist")
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         beside.write_bytes(content)
         os.replace(beside, path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, os.fspath(path)) from None
     finally:
         beside.unlink(missing_ok=True)
 
 
+@with_hints
 class Part:
     """Partial render: the film of a shard, of an unfinished render, or of a finished image, which
     can be saved, continued and merged."""
@@ -253,21 +259,33 @@ class Part:
 @dataclass(frozen=True, eq=False)
 class Surfaces:
     """First hits of rays with the objects of a world. All arrays have the shape of the rays,
-    followed by the components of vectors."""
+    followed by the components of vectors.
 
-    #: Distance along the ray, in units of the length of its direction; infinite for misses.
+    t: distance along the ray, in units of the length of its direction; infinite for misses.
+    Float32.
+
+    object: index in the list of all objects in all groups, as in the image `object`; -1 for misses.
+    Int32.
+
+    triangle: index of the triangle for a mesh, 0 for other objects; -1 for misses. Int32.
+
+    material: index of the material, as in the image `material`; -1 for misses. Int32.
+
+    point: hit point; NaN for misses. Float32 of shape (..., 3). Use `leave` for origins of
+    secondary rays.
+
+    normal: unit geometric normal, pointing outwards; NaN for misses. Float32 of shape (..., 3).
+
+    shading_normal: unit shading normal, interpolated on smooth meshes; NaN for misses. Float32 of
+    shape (..., 3).
+    """
+
     t: Floats
-    #: Index of the object, as in the image `object`; -1 for misses.
     object: Ints
-    #: Index of the triangle for a mesh, 0 for other objects; -1 for misses.
     triangle: Ints
-    #: Index of the material; -1 for misses.
     material: Ints
-    #: Hit point; NaN for misses.
     point: Floats
-    #: Unit geometric normal, pointing outwards; NaN for misses.
     normal: Floats
-    #: Unit shading normal, interpolated on smooth meshes; NaN for misses.
     shading_normal: Floats
     #: The point in double precision, and the offset from it at which secondary rays start.
     _place: Doubles
@@ -296,6 +314,7 @@ class Surfaces:
         return f"<Surfaces of {self.t.size} rays: {int(self.hit.sum())} hit something>"
 
 
+@with_hints
 class World:
     """Scene with camera, lights and materials, ready for rendering. `durer.load` reads one from a
     file; the constructor builds one in code.
@@ -314,6 +333,13 @@ class World:
         folder: PathLike = ".",
         **reading: Any,
     ) -> None:
+        check_type("camera", camera, Camera, "a camera such as PerspectiveCamera")
+        check_type("objects", objects, Iterable, "a list of shapes, meshes, groups or solids")
+        check_type("lights", lights, (Iterable, type(None)), "a list of lights, or None")
+        check_type("background", background, (Background, type(None)), "a Background, or None")
+        lights = None if lights is None else list(lights)
+        for i, light in enumerate(lights or []):
+            check_type(f"lights[{i}]", light, Light, "a light such as PointLight")
         writer, plain = Writer(), PhongMaterial(diffuse_color=(0.8, 0.8, 0.8))
         group = Group(*objects)
         content = group.write(writer, plain)
@@ -341,11 +367,12 @@ class World:
         """Reads any scene that the command reads. Options are those of `durer render` that affect
         reading: dialect, compat, strict, allow_outside, assets, memory, eye, target, fov, and for
         models up, view, studio, environment, view_file, camera, fit, at. `eye` and `target` are
-        texts such as "0,1.5,-4". A model gets lights and a ground, which rays can hit, unless
-        `studio` is False. A model is framed for `size`, so pass `size` here;
-        it also applies to `render`. `words` are options as written after `durer render SCENE`;
-        those about rendering apply to all renders of the world. Raises SceneError with file, line
-        and column."""
+        texts such as "0,1.5,-4". `view` is "three-quarter", "front", "back", "left", "right" or
+        "side" (the same), "top", "bottom", "iso", "iso-left" or "iso-back". A model gets lights and
+        a ground, which rays can hit, unless `studio` is False. A model is framed for `size`, so
+        pass `size` here; it also applies to `render`. `words` are options as written after `durer
+        render SCENE`; those about rendering apply to all renders of the world. Raises SceneError
+        with file, line and column."""
         world = cls.__new__(cls)
         world._load(Path(path), None, [], reading, parse_words(words))
         return world
@@ -448,19 +475,26 @@ class World:
         threads, shard and all others that `durer.options()` lists.
 
         `part` continues earlier work. `callback` is called with the images so far, every `every`
-        seconds. Ctrl-C and exceptions in the callback stop the render; the part keeps the work done
-        so far.
+        seconds. `progress` is a function that is called with the finished and the total number of
+        samples (in images such as depth, of rays), every 0.05 seconds, and at the end with the
+        total twice, also if `time_limit` or `noise_threshold` ended the render before. By default,
+        a long render shows a progress line on a terminal; with False, it does not. Ctrl-C and
+        exceptions in `callback` or `progress` stop the render; the part keeps the work done so far.
 
         >>> pictures = world.render(size=(40, 30), samples=4, show="color,depth")
         >>> pictures["color"].shape, pictures["depth"].shape
         ((30, 40, 3), (30, 40))
         """
+        check_type("part", part, (Part, type(None)), "a Part, or None")
+        if callback is not None and not callable(callback):
+            raise TypeError(f"callback must be a function of the images, but is of type {type(callback).__name__}")
+        shown, last = watch(progress), time.monotonic()
         if part is not None and options:
             self._same(part, options)
         begun = part or self.part(**options)
-        shown, last = watch(progress), time.monotonic()
+        total, _ = begun._part.work()
 
-        def look(done: int, total: int) -> None:
+        def look(done: int, _: int) -> None:
             nonlocal last
             if shown is not None:
                 shown(done, total)
@@ -471,7 +505,7 @@ class World:
         wanted = None if shown is None and callback is None else look
         self._world.render(begun._part, self._all(options), wanted)
         if shown is not None:
-            shown(1, 1)
+            shown(total, total)
         return begun.pictures()
 
     def _same(self, part: Part, options: Mapping[str, Any]) -> None:
@@ -567,6 +601,7 @@ class World:
         >>> world.denoise(noisy)["denoised"].shape
         (30, 40, 3)
         """
+        check_type("pictures", pictures, (Part, Pictures), "the result of render, or a Part")
         part = pictures.part if isinstance(pictures, Pictures) else pictures
         result = Pictures(part)
         name, width, height, values, alpha = part._part.denoised(self._world, check_threads(threads))
@@ -593,6 +628,7 @@ class World:
         0.01, a point needs no more samples once its relative standard error is that small, and
         `samples` is the maximum [default: 1048576]. Other options are those of `render`, such as
         bounces and seed. A model's own light is measured only if it was loaded with `studio=False`.
+        `progress` is as for `Mesh.closest`.
 
         >>> light = world.measure((0, 1.2, 0), normals=(0, 1, 0), samples=64)
         >>> light.illuminance.shape, bool(light.illuminance > 0)
@@ -610,7 +646,11 @@ class World:
             raise ValueError(f"samples must be a whole number from 2 to {1 << 24}, but is {samples!r}")
         given = self._all({"integrator": "path", **options})
         rows = np.ascontiguousarray(at.reshape(-1, 3)), np.ascontiguousarray(towards / lengths, np.float32).reshape(-1, 3)
-        found = with_python_names(lambda: _durer.measure(self._world, rows, kind, (samples, error), given, watch(progress)))
+        shown, total = watch(progress), len(rows[0])
+        look = None if shown is None else lambda done, steps: shown(total * done // steps, total)
+        found = with_python_names(lambda: _durer.measure(self._world, rows, kind, (samples, error), given, look))
+        if shown is not None:
+            shown(total, total)
         irradiance, lux, deviation, count, rare = found
         return Illuminance(
             lux.reshape(shape), deviation.reshape(shape), irradiance.reshape(*shape, 3), count.reshape(shape), rare
@@ -651,19 +691,30 @@ class World:
 
 @dataclass(frozen=True)
 class Illuminance:
-    """Light at the points that `World.measure` was given, in arrays of their shape."""
+    """Light at the points that `World.measure` was given. All arrays have the shape of the points
+    without its last axis, followed by the channels of the irradiance.
 
-    #: Illuminance in lux, if the light of the scene has units; otherwise in the scene's unit.
+    illuminance: illuminance, 0 or more: in lux if the light of the scene has units, otherwise in
+    the unit of the scene. Float64.
+
+    error: standard error of the illuminance, in the unit of the illuminance, so `error /
+    illuminance` is the relative error that the argument `error` of `measure` limits. It assumes
+    independent samples and is rather too large. Float64.
+
+    irradiance: irradiance of the three channels: in W/m^2 in Radiance scenes, otherwise in the unit
+    of the illuminance. Float64 of shape (..., 3).
+
+    samples: number of samples of each point. Uint32.
+
+    has_rare_light: true if the error of a point is mostly that of lights that only random paths
+    find: those in mirrors or glass, on solids, or textured. Then use more samples or
+    `integrator="photons"`.
+    """
+
     illuminance: Doubles
-    #: Standard error of the illuminance, if samples were independent, so it is rather too large.
     error: Doubles
-    #: Irradiance of the three channels, of shape (..., 3): in W/m^2 in Radiance scenes, otherwise in
-    #: the unit of the illuminance.
     irradiance: Doubles
-    #: Number of samples of each point.
     samples: npt.NDArray[np.uint32]
-    #: True if lights that only BSDF sampling finds dominate the error of a point: use more samples
-    #: or `integrator="photons"`.
     has_rare_light: bool
 
     @property
