@@ -5,7 +5,8 @@ use crate::work::{each, install, watched};
 use durer::check::{CheckInput, check};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
-use durer::image::Layer;
+use durer::image::{Layer, LayerKind};
+use durer::math::Vec3;
 use durer::options::RenderOptions;
 use durer::render::explain::SceneNames;
 use durer::render::{self, RenderOutcome};
@@ -172,6 +173,19 @@ impl World {
         Ok(Part(Arc::new(part)))
     }
 
+    /// Returns the camera rays through the centres of a part's pixels: the width and the height of
+    /// the picture, and the origin and the direction of each ray, which are NaN if there is none.
+    fn rays<'py>(&self, py: Python<'py>, part: &Part) -> (u32, u32, Bound<'py, PyArray1<f32>>) {
+        let (job, window) = (part.0.job(), part.0.job().window());
+        let rays: Vec<f32> = install(py, None, || {
+            let raster = render::raster(&self.world, job.width, job.height);
+            let rays = window.pixel_positions().map(|pixel| render::center_ray(&self.world, &raster, pixel));
+            let vectors = rays.flat_map(|ray| ray.map_or([Vec3::NAN; 2], |ray| [ray.origin, ray.dir]));
+            vectors.flat_map(|vector| vector.to_array()).collect()
+        });
+        (window.width, window.height, rays.into_pyarray(py))
+    }
+
     /// Continues to render a part. Returns true if the part is finished.
     fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
         let (control, part) = (options(&pairs)?.control(), part.0.clone());
@@ -268,14 +282,15 @@ impl World {
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Part(Arc<render::PartialRender>);
 
-/// Rendered image for Python, with its name, width, height, values, and its coverage if it is not 1
-/// everywhere.
-type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
+/// Rendered image for Python, with its name, width, height, values, its coverage if it is not 1
+/// everywhere, and a flag that is true if the values are light.
+type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>, bool);
 
 fn picture(py: Python, layer: Layer) -> Picture {
     let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
     let coverage = layer.coverage.map(|coverage| coverage.into_pyarray(py));
-    (layer.name, layer.image.width, layer.image.height, values.into_pyarray(py), coverage)
+    let (width, height, is_light) = (layer.image.width, layer.image.height, layer.kind == LayerKind::Color);
+    (layer.name, width, height, values.into_pyarray(py), coverage, is_light)
 }
 
 #[pymethods]

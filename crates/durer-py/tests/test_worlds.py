@@ -236,6 +236,23 @@ def test_progress_ends_with_the_total(whitted):
     assert told[-1] == (7, 7) and {total for _, total in told} == {7}
 
 
+def test_camera_rays_are_those_of_the_depth(whitted):
+    fisheye = durer.FisheyeCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=180)
+    for world in (whitted, durer.World(fisheye, [durer.Sphere(center=(0, 0, 0), radius=1)])):
+        for options in ({"size": (40, 30)}, {"size": (40, 30), "crop": (16, 11, 7, 9)}):
+            origins, directions = world.rays(**options)
+            depth = world.render(samples=1, show="depth", **options)["depth"]
+            assert origins.shape == directions.shape == (*depth.shape, 3) and origins.dtype == directions.dtype == np.float64
+            found = world.closest(origins, directions)
+            assert (np.where(found.hit, found.t, 0) == depth).all() and found.hit.any()
+            seen = ~np.isnan(directions[..., 0])
+            assert np.allclose(np.linalg.norm(directions[seen], axis=-1), 1) and (np.isnan(origins[..., 0]) == ~seen).all()
+    corner = durer.World(fisheye, []).rays(size=(8, 8))[1][0, 0]
+    assert np.isnan(corner).all()
+    with pytest.raises(ValueError, match="size must be width and height"):
+        whitted.rays(size=3)
+
+
 def test_pictures_are_compared():
     a = np.zeros((32, 32, 3), np.float32)
     b = a.copy()

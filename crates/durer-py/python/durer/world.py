@@ -27,10 +27,9 @@ PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 #: Images of single numbers, whose three channels are equal.
 _SCALAR_IMAGES = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
-#: Images of light, which are saved with the exposure and the transfer function.
-_LIGHT_IMAGES = {
-    "color", "denoised", "ambient", "diffuse", "highlight", "reflection", "refraction", "background",
-}
+#: Name, width, height, values and coverage of an image, and true if it shows light, which is saved
+#: with the exposure and the transfer function.
+_Layer: TypeAlias = tuple[str, int, int, Floats, Optional[Floats], bool]
 
 
 @with_hints
@@ -44,9 +43,9 @@ class Pictures(dict[str, Floats]):
         super().__init__()
         #: The part that contains the images.
         self.part = part
-        self._denoised: Optional[tuple[str, int, int, Floats, Optional[Floats]]] = None
+        self._denoised: Optional[_Layer] = None
         self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
-        for name, width, height, values, alpha in part._part.pictures(False):
+        for name, width, height, values, alpha, _ in part._part.pictures(False):
             picture = values.reshape(height, width, 3)
             self[name] = picture[..., 0].copy() if name in _SCALAR_IMAGES else picture
             self._alpha[name] = alpha
@@ -95,8 +94,7 @@ class Pictures(dict[str, Floats]):
         integers = Path(name).suffix.lower() not in (".pfm", ".hdr", ".exr")
         pictures = [*([] if self._denoised is None else [self._denoised]), *self.part._part.pictures(integers)]
         layers = []
-        for own, width, height, values, alpha in pictures:
-            light = own in _LIGHT_IMAGES
+        for own, width, height, values, alpha, light in pictures:
             layers.append((own, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), light))
         return layers
 
@@ -544,6 +542,23 @@ class World:
             if not work.done():
                 await asyncio.wait([work])
 
+    def rays(self, **options: Any) -> tuple[Doubles, Doubles]:
+        """Returns the origins and the directions of the camera rays through the centres of all
+        pixels, as float64 arrays of shape (height, width, 3) with the top row first. Options are
+        those of `render`, of which `size` and `crop` matter.
+
+        These are the rays that images such as depth are made of. Directions have unit length.
+        Where the camera has no ray, both are NaN, and such rays hit nothing. A lens is passed
+        through its centre. Clipping planes of the camera are not part of the rays.
+
+        >>> origins, directions = world.rays(size=(40, 30))
+        >>> world.closest(origins, directions).t.shape
+        (30, 40)
+        """
+        width, height, rays = self._world.rays(self.part(**options)._part)
+        both = rays.reshape(height, width, 2, 3).astype(np.float64)
+        return both[:, :, 0], both[:, :, 1]
+
     def closest(
         self,
         origins: npt.ArrayLike,
@@ -604,8 +619,8 @@ class World:
         check_type("pictures", pictures, (Part, Pictures), "the result of render, or a Part")
         part = pictures.part if isinstance(pictures, Pictures) else pictures
         result = Pictures(part)
-        name, width, height, values, alpha = part._part.denoised(self._world, check_threads(threads))
-        result._denoised = (name, width, height, values, alpha)
+        result._denoised = part._part.denoised(self._world, check_threads(threads))
+        name, width, height, values, *_ = result._denoised
         result[name] = values.reshape(height, width, 3)
         return result
 
