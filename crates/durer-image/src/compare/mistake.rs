@@ -76,7 +76,7 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     if close && fit.matched >= MIN_MATCHED {
         return findings;
     }
-    let edges = (!rules.is_empty() && !fitted).then(|| edges_after(pair, &rules, &test)).flatten();
+    let edges = edges_beside_gamma(pair, &rules, &reference, &test);
     if let Some(edges) = edges.filter(|edges| fit.remaining * (1.0 - edges.explained) <= MAX_LEFT_FITTED) {
         findings.push(Finding { explained: 1.0 - fit.remaining * (1.0 - edges.explained), ..edges });
         return findings;
@@ -93,12 +93,17 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     }
 }
 
-/// Returns the finding that the difference which rules leave is at edges.
-fn edges_after(pair: &Pair, rules: &[Rule], test: &View) -> Option<Finding> {
-    let apply = |pixels: Vec<Vec3>, rule: &Rule| rule.apply(&View::of(pair, &pixels));
-    let pixels = rules.iter().fold(pair.reference.clone(), apply);
+/// Returns the finding that the rest of the difference is at edges if the only rule is a wrong
+/// gamma. The gamma is removed from the picture, because edges are averaged before it is applied.
+fn edges_beside_gamma(pair: &Pair, rules: &[Rule], reference: &View, test: &View) -> Option<Finding> {
+    let undo = match rules {
+        [Rule::GammaTwice] => Rule::GammaMissing,
+        [Rule::GammaMissing] => Rule::GammaTwice,
+        _ => return None,
+    };
+    let pixels = undo.apply(test);
     let view = View::of(pair, &pixels);
-    parts::remaining_edges(&view, test, &sample::samples(&view, test))
+    parts::remaining_edges(reference, &view, &sample::samples(reference, &view))
 }
 
 /// Finds a sequence of rules, each of which explains most of the difference that the previous rules

@@ -140,7 +140,7 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     edges_as("the pictures differ only at edges", reference, test, samples)
 }
 
-/// Detects what [`edges`] detects after other mistakes were applied to the reference.
+/// Detects what [`edges`] detects, beside another mistake.
 pub fn remaining_edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     edges_as("the edges differ as well", reference, test, samples)
 }
