@@ -188,8 +188,7 @@ pub struct Diagnostics {
 /// column.
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let errors = self.list.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
-        let messages: Vec<&str> = errors.map(|error| error.message.as_str()).collect();
+        let messages: Vec<&str> = self.errors().map(|error| error.message.as_str()).collect();
         f.write_str(&messages.join("\n"))
     }
 }
@@ -237,7 +236,7 @@ impl Diagnostics {
 
     /// Adds the diagnostics of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
-        let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();
+        let errors = other.errors().count();
         // Diagnostics that the other collection counted but did not store are counted here as well.
         let uncollected = (other.errors - errors, other.warnings - (other.list.len() - errors));
         for diagnostic in other.list {
@@ -265,6 +264,11 @@ impl Diagnostics {
     /// Diagnostics in the order in which they were added.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.list.iter()
+    }
+
+    /// Errors in the order in which they were added.
+    pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.iter().filter(|diagnostic| diagnostic.severity == Severity::Error)
     }
 
     /// Byte offset of the end of the last span in a file that any diagnostic refers to.

@@ -1,6 +1,6 @@
 //! The error type of this crate.
 
-use durer_diag::{Diagnostics, Files, Severity};
+use durer_diag::{Diagnostics, Files};
 use durer_image::ImageError;
 #[cfg(feature = "fs")]
 use durer_image::SaveError;
@@ -61,8 +61,7 @@ impl std::error::Error for SceneError {}
 impl std::fmt::Display for SceneError {
     /// Writes one line for each error: `file:line:column: message`.
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let errors = self.diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
-        for (i, error) in errors.enumerate() {
+        for (i, error) in self.diagnostics.errors().enumerate() {
             if i > 0 {
                 writeln!(f)?;
             }

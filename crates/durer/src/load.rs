@@ -5,7 +5,7 @@ mod model_options;
 
 use crate::camera_placement::{CameraPlacement, orbit};
 use crate::job::JobContext;
-use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
+use durer_diag::{Diagnostic, Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::asset_export::{AssetFile, export_assets};
 use durer_formats::course::{self, Guess, Hint, ReadOptions};
@@ -225,7 +225,7 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics
     if dialect != Dialect::Durer {
         course::read(bytes, file, ReadOptions { dialect, strict: true, compat: dialect.rules().quirks }, &mut strict);
     }
-    let first = strict.iter().find(|d| d.severity == Severity::Error);
+    let first = strict.errors().next();
     if let Some(first) = first.filter(|first| !messages.iter().any(|known| known.span == first.span)) {
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
         let note = Diagnostic::note(message)

@@ -8,7 +8,7 @@ use durer::render::explain::{SceneNames, number, vector};
 use durer::world::{Hit, SurfaceInteraction, World};
 
 /// Returns all crossings of a ray with the surfaces there, sorted by `t`. Hits of one object with
-/// the same `t` count once. Where two objects touch, the ray leaves one before it enters the other.
+/// the same `t` count once. At the same `t`, the ray leaves objects before it enters others.
 fn crossings(world: &World, ray: &Ray) -> Vec<(Hit, SurfaceInteraction)> {
     let hits = (0..world.objects().len() as u32).flat_map(|object| world.all_hits_of(object, ray));
     let mut crossings: Vec<_> = hits.map(|hit| (hit, world.interaction(ray, hit))).collect();

@@ -37,7 +37,7 @@ def __getattr__(name: str) -> Any:
         try:
             return importlib.import_module(f".{name}", __name__)
         except ModuleNotFoundError as error:
-            # `help`, `hasattr` and others expect this error of a name that cannot be had.
+            # `help` and `hasattr` expect an AttributeError if an optional package is missing.
             raise AttributeError(str(error)) from error
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

@@ -7,6 +7,8 @@ import sys
 import time
 from typing import Callable, Optional, TypeAlias, Union
 
+from ._errors import check_type
+
 Watch: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = Union[None, bool, Watch]
 
@@ -20,8 +22,7 @@ def watch(progress: Progress, count: int = _MIN_ITEMS) -> Optional[Watch]:
     line on the terminal; None if there are few items or no terminal."""
     if callable(progress):
         return progress
-    if progress is not None and not isinstance(progress, bool):
-        raise TypeError(f"progress must be a function of two numbers, True, False or None, but is of type {type(progress).__name__}")
+    check_type("progress", progress, (bool, type(None)), "a function of two numbers, True, False or None")
     if progress is False or progress is None and count < _MIN_ITEMS or progress is None and not sys.stderr.isatty():
         return None
     start = time.monotonic()

@@ -149,23 +149,22 @@ impl EmitterShape {
     /// Pdf per solid angle with which [`EmitterShape::sample`] chooses a direction that hits the
     /// surface at `distance`.
     pub fn pdf(&self, normal: Vec3, from: DVec3, wi: Vec3, distance: f32, area_limit: f32) -> f32 {
-        match *self {
+        let window = match *self {
             EmitterShape::Sphere(center, radius) => {
                 let to = offset(center, from);
                 let (d2, r2) = (to.length_squared(), radius * radius);
                 if is_in_sphere(d2, r2) {
                     return distance * distance / (self.area() * sphere_cosine(to, wi, distance, radius));
                 }
-                1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
+                return 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2));
             }
-            EmitterShape::Closed(closed) => closed.pdf(from, wi, distance),
-            EmitterShape::Parallelogram(p, [e, f]) => {
-                match SphericalRectangle::new(offset(p, from), e, f, area_limit) {
-                    Some(window) => 1.0 / window.solid_angle as f32,
-                    None => distance * distance / (wi.dot(normal).abs() * self.area()),
-                }
-            }
-            _ => distance * distance / (wi.dot(normal).abs() * self.area()),
+            EmitterShape::Closed(closed) => return closed.pdf(from, wi, distance),
+            EmitterShape::Parallelogram(p, [e, f]) => SphericalRectangle::new(offset(p, from), e, f, area_limit),
+            EmitterShape::Triangle(..) | EmitterShape::Ellipse(..) => None,
+        };
+        match window {
+            Some(window) => 1.0 / window.solid_angle as f32,
+            None => distance * distance / (wi.dot(normal).abs() * self.area()),
         }
     }
 
